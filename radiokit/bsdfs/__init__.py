@@ -1,0 +1,1 @@
+"""BSDFs: one file for each model; no model imports another."""

@@ -1,0 +1,1 @@
+"""Checks: one file for each law. The judges know no model."""

@@ -1,0 +1,1 @@
+"""Contracts: what a model must provide, and where models are found."""

@@ -1,0 +1,156 @@
+"""The BSDF contract: what a scattering model must provide, and what it claims of itself."""
+
+from __future__ import annotations
+
+import dataclasses
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from radiokit.contracts.parameters import check_parameters
+from radiokit.contracts.registry import Registry
+from radiokit.facts.directions import check_directions
+from radiokit.facts.source import Source
+
+if TYPE_CHECKING:
+    from radiokit.measure.twin import Twin
+
+__all__ = ["BSDF", "Claims", "DeltaLobe", "FloatArray", "bsdf", "list_bsdfs"]
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Claims:
+    """What a model says of itself. The judges' findings must equal it.
+
+    Parameters
+    ----------
+    reciprocity : {"yes", "no", "eta-scaled"}
+    conserves : bool
+        The directional albedo never exceeds 1.
+    lossless : bool
+        The directional albedo is 1 for every direction.
+    delta : bool
+        The model scatters (only) into delta lobes.
+    """
+
+    reciprocity: Literal["yes", "no", "eta-scaled"]
+    conserves: bool
+    lossless: bool = False
+    delta: bool = False
+
+
+@dataclass(frozen=True)
+class DeltaLobe:
+    """Scattering into a single direction: ``wi`` (N, 3) and ``weight`` (N,), the share of the flux."""
+
+    wi: FloatArray
+    weight: FloatArray
+
+
+class BSDF(ABC):
+    """A scattering model in the local frame whose z axis is the surface normal.
+
+    Subclasses are frozen, keyword-only dataclasses, one a file. Directions are float64 unit vectors
+    that point away from the surface. ``evaluate``, ``pdf`` and ``sample`` take ``(N, 3)`` arrays and trust
+    them; calling the model checks them first. A value is in [sr⁻¹] and excludes the cosine; it has the shape
+    ``(N,)``, or ``(N, K)`` for K wavelengths.
+    """
+
+    name: ClassVar[str] = ""
+    SOURCE: ClassVar[Source]
+    isotropic: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        check_parameters(self)
+
+    @property
+    @abstractmethod
+    def claims(self) -> Claims:
+        """What the model claims, for these parameters."""
+
+    @abstractmethod
+    def evaluate(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
+        """Return f(wi, wo) [sr⁻¹], without delta lobes, 0 below the horizon."""
+
+    @abstractmethod
+    def pdf(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
+        """Return the density [sr⁻¹] with which ``sample`` picks ``wi``, without delta lobes."""
+
+    @abstractmethod
+    def sample(self, u: FloatArray, wo: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Turn uniform points ``u`` (N, 2) in [0, 1)² into ``wi`` and ``weight = f |cos θi| / pdf``.
+
+        A sample that is absorbed, or leaves below the horizon, has weight 0.
+        """
+
+    def delta_lobes(self, wo: FloatArray) -> tuple[DeltaLobe, ...]:
+        """Return the delta lobes for ``wo`` (N, 3); none by default."""
+        return ()
+
+    def lobe_width(self) -> float | None:
+        """Return the lobe's width in the slope space of half vectors, or None if it is unknown.
+
+        α for a microfacet model, 1 for a diffuse one. Quadrature places its nodes by it; being wrong by a
+        factor of 4 costs evaluations, not accuracy.
+        """
+        return None
+
+    @abstractmethod
+    def symbolic(self) -> Twin:
+        """Return the symbolic twin: f(wi, wo) as a SymPy expression written from the source."""
+
+    def parameters(self) -> dict[str, Any]:
+        """Return the parameters by name."""
+        if not dataclasses.is_dataclass(self):
+            return {}
+        return {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+
+    def __call__(self, wi: npt.ArrayLike, wo: npt.ArrayLike) -> Any:
+        """Return f(wi, wo) [sr⁻¹] for checked directions of any broadcastable shape ``(..., 3)``.
+
+        Raises
+        ------
+        ParameterError
+            When a direction is not a finite unit vector of shape ``(..., 3)``.
+        """
+        wi, wo = check_directions("wi", wi), check_directions("wo", wo)
+        wi, wo = np.broadcast_arrays(wi, wo)
+        flat = self.evaluate(wi.reshape(-1, 3), wo.reshape(-1, 3))
+        value = np.reshape(flat, wi.shape[:-1] + np.shape(flat)[1:])
+        return value[()]
+
+
+_registry = Registry("BSDF", "radiokit.bsdfs", BSDF, "radiokit.bsdfs")
+
+
+def list_bsdfs() -> list[str]:
+    """Return the names of all BSDF models, third-party ones included.
+
+    >>> "lambert" in list_bsdfs()
+    True
+    """
+    return _registry.names()
+
+
+def bsdf(name: str, **parameters: Any) -> BSDF:
+    """Return the BSDF model called ``name``.
+
+    Raises
+    ------
+    UnknownNameError
+        When there is no such model.
+    ParameterError
+        When a parameter is out of its range.
+    RadiokitError
+        When a parameter is unknown or missing.
+
+    >>> bsdf("lambert", reflectance=0.5)
+    Lambert(reflectance=0.5)
+    """
+    model: BSDF = _registry.make(name, parameters)
+    return model

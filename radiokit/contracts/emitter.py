@@ -1,0 +1,86 @@
+"""The emitter contract: what a light source must provide to a point that it shines on."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import Any, ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from radiokit.contracts.parameters import check_parameters
+from radiokit.contracts.registry import Registry
+from radiokit.facts.errors import RadiokitError
+from radiokit.facts.estimate import Estimate
+
+__all__ = ["Emitter", "emitter", "list_emitters"]
+
+FloatArray = npt.NDArray[np.float64]
+
+
+class Emitter(ABC):
+    """A light source in world coordinates, seen from the receiver at ``position`` (3,).
+
+    Subclasses are frozen, keyword-only dataclasses, one a file. Directions are world-space unit vectors
+    ``(N, 3)`` from the receiver towards the light. An emitter is either *delta* (it arrives from a finite
+    number of directions: ``incident``) or it has a radiance (``radiance``, ``sample``, ``pdf``).
+    """
+
+    name: ClassVar[str] = ""
+    delta: ClassVar[bool] = False
+
+    def __post_init__(self) -> None:
+        check_parameters(self)
+
+    def incident(self, position: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return a delta light's directions (K, 3) and the irradiances normal to them (K,) [W m⁻²]."""
+        raise RadiokitError(f"{self.name} is no delta light: it has a radiance")
+
+    def radiance(self, direction: FloatArray, position: FloatArray) -> FloatArray:
+        """Return the radiance that arrives from ``direction`` (N, 3): (N,) [W m⁻² sr⁻¹]."""
+        raise RadiokitError(f"{self.name} is a delta light: it has no radiance")
+
+    def sample(self, u: FloatArray, position: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Turn uniform points ``u`` (N, 2) into directions (N, 3) and their densities (N,) [sr⁻¹]."""
+        raise RadiokitError(f"{self.name} is a delta light: its direction is not sampled")
+
+    def pdf(self, direction: FloatArray, position: FloatArray) -> FloatArray:
+        """Return the density (N,) [sr⁻¹] with which ``sample`` picks ``direction``."""
+        raise RadiokitError(f"{self.name} is a delta light: its direction is not sampled")
+
+    @abstractmethod
+    def solid_angle(self, position: FloatArray) -> Estimate:
+        """Return the solid angle [sr] that the light subtends at ``position``; 0 for a delta light."""
+
+    def irradiance(self, position: FloatArray, normal: FloatArray) -> Estimate | None:
+        """Return the closed-form irradiance [W m⁻²] on a receiver, or None where there is none."""
+        return None
+
+
+_registry = Registry("emitter", "radiokit.emitters", Emitter, "radiokit.emitters")
+
+
+def list_emitters() -> list[str]:
+    """Return the names of all emitters, third-party ones included.
+
+    >>> "point" in list_emitters()
+    True
+    """
+    return _registry.names()
+
+
+def emitter(name: str, **parameters: Any) -> Emitter:
+    """Return the emitter called ``name``.
+
+    Raises
+    ------
+    UnknownNameError
+        When there is no such emitter.
+    RadiokitError
+        When a parameter is unknown, missing, or out of its range.
+
+    >>> emitter("constant", radiance=1.0).name
+    'constant'
+    """
+    light: Emitter = _registry.make(name, parameters)
+    return light

@@ -1,0 +1,65 @@
+"""Registry: finds models by name, in the package's own folder and in other packages' entry points."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import pkgutil
+from functools import cached_property
+from importlib.metadata import entry_points
+from typing import Any
+
+from radiokit.contracts.parameters import build
+from radiokit.facts.errors import RadiokitError, UnknownNameError
+
+__all__ = ["Registry"]
+
+
+class Registry:
+    """The models of one kind: one class in each file of ``package``, plus the entry points ``group``.
+
+    Nothing is imported before the first question is asked.
+    """
+
+    def __init__(self, kind: str, package: str, base: type, group: str) -> None:
+        self.kind, self.package, self.base, self.group = kind, package, base, group
+
+    @cached_property
+    def classes(self) -> dict[str, type]:
+        """All model classes, by name, in alphabetical order."""
+        found: dict[str, type] = {}
+        package = importlib.import_module(self.package)
+        for info in pkgutil.iter_modules(package.__path__):
+            if info.name.startswith("_"):
+                continue
+            module = importlib.import_module(f"{self.package}.{info.name}")
+            for _, cls in inspect.getmembers(module, inspect.isclass):
+                if cls.__module__ == module.__name__ and issubclass(cls, self.base):
+                    self._add(found, cls, module.__name__)
+        for point in entry_points(group=self.group):
+            self._add(found, point.load(), point.value)
+        return dict(sorted(found.items()))
+
+    def _add(self, found: dict[str, type], cls: Any, where: str) -> None:
+        if not (inspect.isclass(cls) and issubclass(cls, self.base)):
+            raise RadiokitError(f"{where} is no {self.base.__name__}", where=where)
+        name = getattr(cls, "name", "")
+        if not name:
+            raise RadiokitError(f"{where} gives no name: set the class attribute 'name'", where=where)
+        if name in found:
+            raise RadiokitError(f"two models are called {name!r}: {found[name]} and {cls}", name=name)
+        found[name] = cls
+
+    def names(self) -> list[str]:
+        """Return the names, sorted."""
+        return list(self.classes)
+
+    def get(self, name: str) -> type:
+        """Return the class called ``name``."""
+        if name not in self.classes:
+            raise UnknownNameError(self.kind, name, self.classes)
+        return self.classes[name]
+
+    def make(self, name: str, parameters: dict[str, Any]) -> Any:
+        """Return the model called ``name`` with these parameters."""
+        return build(self.kind, name, self.get(name), parameters)

@@ -1,0 +1,1 @@
+"""Emitters: one file for each light source; no emitter imports another."""

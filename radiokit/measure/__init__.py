@@ -1,0 +1,1 @@
+"""Measure: integration, sampling and statistics. It knows no optics."""

@@ -1,0 +1,1 @@
+"""Physics: what holds for any material."""

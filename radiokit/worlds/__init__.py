@@ -1,0 +1,1 @@
+"""Worlds: scenes with an answer: shading a point, enclosures, closed-form cases."""

@@ -1,0 +1,1 @@
+"""Cases: one file for each family of closed-form scenes."""
