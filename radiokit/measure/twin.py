@@ -1,0 +1,331 @@
+"""Twin: a kernel's symbolic definition, its oracle to any number of digits, and error counted in ulps."""
+
+from __future__ import annotations
+
+import functools
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from types import FrameType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from radiokit.facts.errors import ParameterError, RadiokitError
+
+if TYPE_CHECKING:
+    import mpmath
+    import sympy
+
+    DIRECTION_SYMBOLS: tuple[sympy.Symbol, ...]
+
+__all__ = ["DIRECTION_SYMBOLS", "Twin", "proved_zero", "scaled_ulps", "ulps"]
+
+_PRECISION = threading.RLock()  # mpmath's working precision is one for the whole process
+_MAX_OPERATIONS = 400  # beyond this size, simplify() rarely comes back within the seconds allowed
+
+
+@functools.cache
+def _direction_symbols() -> tuple[sympy.Symbol, ...]:
+    import sympy
+
+    return tuple(sympy.symbols("x_i y_i z_i x_o y_o z_o", real=True))
+
+
+def __getattr__(name: str) -> Any:
+    """Make ``DIRECTION_SYMBOLS`` when it is first asked for, so that importing this loads no SymPy."""
+    if name == "DIRECTION_SYMBOLS":
+        return _direction_symbols()
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+@dataclass(frozen=True)
+class Twin:
+    r"""A function as a SymPy expression, written from its source and never from the kernel.
+
+    Parameters
+    ----------
+    expression : sympy.Expr
+        Dirac deltas may stand in it; evaluation counts them as 0, as ``BSDF.evaluate`` does.
+    parameters : mapping of sympy.Symbol to float
+        The model's parameters and their values, taken as exact binary numbers.
+    arguments : tuple of sympy.Symbol
+        What the function depends on; ``DIRECTION_SYMBOLS`` (x_i, y_i, z_i, x_o, y_o, z_o) by default.
+
+    >>> import mpmath, sympy
+    >>> rho = sympy.Symbol("rho", positive=True)
+    >>> twin = Twin(rho / sympy.pi, {rho: 0.5})
+    >>> print(mpmath.nstr(twin.evaluate((0, 0, 1), (0, 0, 1)), 30))
+    0.159154943091895335768883763373
+    >>> twin.latex()
+    '\\frac{\\rho}{\\pi}'
+    """
+
+    expression: sympy.Expr
+    parameters: Mapping[sympy.Symbol, float] = field(default_factory=dict)
+    arguments: tuple[sympy.Symbol, ...] = field(default_factory=_direction_symbols)
+
+    def __post_init__(self) -> None:
+        unbound = self.expression.free_symbols - set(self.arguments) - set(self.parameters)
+        if unbound:
+            names = ", ".join(sorted(map(str, unbound)))
+            raise ParameterError("expression", self.expression, f"without unbound symbols ({names})")
+
+    def evaluate(self, wi: npt.ArrayLike, wo: npt.ArrayLike, digits: int = 50) -> mpmath.mpf:
+        """Return the value for one pair of directions (3,), each taken as the exact binary numbers."""
+        return self.at(*_components(wi, wo), digits=digits)
+
+    def at(self, *values: float, digits: int = 50) -> mpmath.mpf:
+        """Return the value for these arguments, correct to ``digits`` significant digits.
+
+        The precision is doubled until two results agree, so a source's formula may cancel freely.
+
+        Raises
+        ------
+        RadiokitError
+            When the result does not settle at sixteen times the digits.
+        """
+        import mpmath
+
+        numbers = self._numbers(values)
+        value = previous = mpmath.mpf(mpmath.nan)
+        with _PRECISION:
+            for doubling in range(5):
+                precision = 2**doubling * (digits + 10)
+                with mpmath.workdps(precision):
+                    previous, value = value, self._real(*numbers)
+                    if abs(value - previous) <= abs(value) * mpmath.mpf(10) ** -digits:
+                        return value
+            if max(abs(value), abs(previous)) < mpmath.mpf(10) ** (-precision // 3):
+                return mpmath.mpf(0)  # rounding noise that shrinks with the precision
+        raise RadiokitError(f"no {digits} digits of {self.expression} at {values}", values=values)
+
+    def condition(self, wi: npt.ArrayLike, wo: npt.ArrayLike, digits: int = 20) -> float:
+        """Return the relative condition number Σ|x ∂f/∂x| / |f| for one pair of directions (3,)."""
+        return self.condition_at(*_components(wi, wo), digits=digits)
+
+    def condition_at(self, *values: float, digits: int = 20) -> float:
+        """Return Σ|x ∂f/∂x| / |f| over the arguments and the parameters: 0 where f vanishes throughout.
+
+        The derivatives are central differences whose step is 10^-digits of x, at three times the digits.
+        """
+        import mpmath
+
+        numbers = self._numbers(values)
+        with _PRECISION, mpmath.workdps(3 * digits + 10):
+            step = mpmath.mpf(10) ** -digits
+            total = mpmath.mpf(0)
+            for index, number in enumerate(numbers):
+                if number:
+                    up, down = (
+                        self._real(*numbers[:index], number * factor, *numbers[index + 1 :])
+                        for factor in (1 + step, 1 - step)
+                    )
+                    total += abs(up - down) / (2 * step)
+            value = abs(self._real(*numbers))
+            if not value:
+                return np.inf if total else 0.0
+            return float(total / value)
+
+    def swapped(self) -> Twin:
+        """Return the twin with wi and wo exchanged."""
+        symbols = _direction_symbols()
+        exchange = dict(zip(symbols, symbols[3:] + symbols[:3], strict=True))
+        return replace(self, expression=self.expression.xreplace(exchange))
+
+    def latex(self) -> str:
+        """Return the expression as LaTeX."""
+        import sympy
+
+        return str(sympy.latex(self.expression))
+
+    def _repr_latex_(self) -> str:
+        return f"$\\displaystyle {self.latex()}$"
+
+    def _numbers(self, values: Sequence[float]) -> list[mpmath.mpf]:
+        """Return arguments and parameters as exact multiple-precision numbers."""
+        import mpmath
+
+        if len(values) != len(self.arguments):
+            raise ParameterError("values", values, f"{len(self.arguments)} numbers")
+        return [mpmath.mpf(float(value)) for value in (*values, *self.parameters.values())]
+
+    def _real(self, *numbers: mpmath.mpf) -> mpmath.mpf:
+        """Evaluate at mpmath's present precision and drop the imaginary part, which must be 0."""
+        import mpmath
+
+        symbols = (*self.arguments, *self.parameters)
+        value = mpmath.mpmathify(_compiled(self.expression, symbols)(*numbers))
+        if isinstance(value, mpmath.mpc):
+            if abs(value.imag) > mpmath.sqrt(mpmath.eps) * abs(value.real):
+                raise RadiokitError(f"{self.expression} is complex at {numbers}", values=numbers)
+            value = value.real
+        return value
+
+
+@functools.lru_cache(maxsize=256)
+def _compiled(expression: sympy.Expr, symbols: tuple[sympy.Symbol, ...]) -> Callable[..., Any]:
+    """Compile an expression to mpmath once."""
+    import sympy
+
+    compiled: Callable[..., Any] = sympy.lambdify(
+        symbols, expression, modules=[{"DiracDelta": lambda _: 0}, "mpmath"], cse=True
+    )
+    return compiled
+
+
+def _components(wi: npt.ArrayLike, wo: npt.ArrayLike) -> list[float]:
+    """Return the six components of a pair of directions."""
+    components = [float(x) for direction in (wi, wo) for x in np.asarray(direction, dtype=float)]
+    if len(components) != 6:
+        raise ParameterError("wi, wo", (wi, wo), "two directions of shape (3,)")
+    return components
+
+
+def ulps(value: npt.ArrayLike, exact: Any) -> Any:
+    """Return |value − exact| in units of the last place of ``exact``, rounded to float64.
+
+    A unit is never smaller than the smallest denormal, so an underflow to 0 costs at most half a unit. A
+    NaN, or an infinity where the truth is finite, is infinitely far away.
+
+    Parameters
+    ----------
+    value : array_like, shape (...)
+        What was computed.
+    exact : mpmath.mpf, or a sequence of the same shape
+        The truth.
+
+    >>> import mpmath
+    >>> float(ulps(1.0 + 2**-52, mpmath.mpf(1))), float(ulps(0.0, mpmath.mpf("1e-400"))) < 0.5
+    (1.0, True)
+    """
+    import mpmath
+
+    values, truths = np.asarray(value, dtype=float), np.asarray(exact, dtype=object)
+    result = np.empty(np.broadcast_shapes(values.shape, truths.shape))
+    for index in np.ndindex(result.shape):
+        v = float(np.broadcast_to(values, result.shape)[index])
+        truth = mpmath.mpmathify(np.broadcast_to(truths, result.shape)[index])
+        nearest = float(truth)
+        if not (np.isfinite(v) and np.isfinite(nearest)):
+            result[index] = 0.0 if v == nearest else np.inf
+            continue
+        with _PRECISION, mpmath.workdps(50):
+            unit = mpmath.mpf(float(np.spacing(abs(nearest))))
+            result[index] = float(abs(mpmath.mpf(v) - truth) / unit)
+    return result[()]
+
+
+def scaled_ulps(value: npt.ArrayLike, exact: Any, condition: npt.ArrayLike) -> Any:
+    """Return the error in ulps divided by max(1, condition): what a backward-stable kernel keeps small.
+
+    >>> import mpmath
+    >>> float(scaled_ulps(1.0 + 2**-50, mpmath.mpf(1), 2.0))
+    2.0
+    """
+    count = np.asarray(ulps(value, exact))
+    # Where the truth is 0 or not finite the condition number means nothing, and excuses nothing.
+    defined = np.isfinite(condition) & np.isfinite(count)
+    return np.where(defined, count / np.maximum(1.0, np.where(defined, condition, 1.0)), count)[()]
+
+
+def proved_zero(expression: sympy.Expr, *, seconds: float = 5.0) -> bool:
+    """Return True when SymPy's normal forms reduce the expression to 0, given |wi| = |wo| = 1.
+
+    False means that no proof was found in time, or that a random point refutes the identity; it is no
+    proof of the contrary. Reciprocity is ``proved_zero(twin.swapped().expression - twin.expression)``.
+
+    Parameters
+    ----------
+    expression : sympy.Expr
+        ``DIRECTION_SYMBOLS`` in it are components of unit vectors.
+    seconds : float
+        Time after which the attempt is given up [s].
+
+    >>> x_i, y_i, z_i, *_ = _direction_symbols()
+    >>> proved_zero(x_i**2 + y_i**2 + z_i**2 - 1), proved_zero(x_i**2 + y_i**2 - 1)
+    (True, False)
+    """
+    import sympy
+
+    expression = sympy.sympify(expression)
+    if expression == 0:
+        return True
+    try:
+        with _time_limit(seconds):
+            if _refuted(expression):
+                return False
+            reduced = _on_unit_sphere(expression)
+            forms: list[Callable[[Any], Any]] = [sympy.expand, sympy.cancel, sympy.factor, sympy.simplify]
+            for form in forms:
+                if form is not sympy.expand and sympy.count_ops(reduced) > _MAX_OPERATIONS:
+                    break
+                if reduced == 0 or form(reduced) == 0:
+                    return True
+    except (_TimeIsUp, sympy.PolynomialError):
+        return False
+    return False
+
+
+def _on_unit_sphere(expression: sympy.Expr) -> sympy.Expr:
+    """Replace z² by 1 − x² − y² for both directions, from the innermost polynomials outwards."""
+    import sympy
+
+    x_i, y_i, z_i, x_o, y_o, z_o = symbols = _direction_symbols()
+
+    def reduce(part: sympy.Expr) -> sympy.Expr:
+        for x, y, z in ((x_i, y_i, z_i), (x_o, y_o, z_o)):
+            part = sympy.rem(part, x**2 + y**2 + z**2 - 1, z) if part.has(z) else part
+        return sympy.expand(part)
+
+    def is_polynomial(part: sympy.Expr) -> bool:
+        return isinstance(part, sympy.Add) and part.has(*symbols) and part.is_polynomial(*symbols)
+
+    return expression.replace(is_polynomial, reduce)
+
+
+def _refuted(expression: sympy.Expr) -> bool:
+    """Return whether the expression is clearly not 0 at some point with |wi| = |wo| = 1."""
+    import mpmath
+
+    directions = _direction_symbols()
+    others = tuple(sorted(expression.free_symbols - set(directions), key=str))
+    rng = np.random.default_rng(0)
+    function = _compiled(expression, directions + others)
+    for _ in range(4):
+        with _PRECISION, mpmath.workdps(50):
+            pairs = [[mpmath.mpf(x) for x in rng.uniform(0.1, 1.0, 3)] for _ in range(2)]
+            unit = [x / mpmath.norm(pair) for pair in pairs for x in pair]
+            try:
+                numbers = map(mpmath.mpf, rng.uniform(0.1, 0.9, len(others)))
+                value = mpmath.mpmathify(function(*unit, *numbers))
+            except (ArithmeticError, NameError, TypeError, ValueError):
+                return False
+            if mpmath.isfinite(value) and abs(value) > mpmath.mpf(10) ** -25:
+                return True
+    return False
+
+
+class _TimeIsUp(BaseException):
+    """Not an Exception, so that no handler inside SymPy swallows it."""
+
+
+@contextmanager
+def _time_limit(seconds: float) -> Iterator[None]:
+    """Raise ``_TimeIsUp`` from the first function call after the time has run out, in this thread only."""
+    end = time.monotonic() + seconds
+    before = sys.getprofile()
+
+    def watch(frame: FrameType, event: str, argument: Any) -> None:
+        if event == "call" and time.monotonic() > end:
+            raise _TimeIsUp
+
+    sys.setprofile(watch)
+    try:
+        yield
+    finally:
+        sys.setprofile(before)
