@@ -9,6 +9,7 @@ from typing import Any
 __all__ = [
     "CallableError",
     "MissingExtraError",
+    "NonFiniteError",
     "ParameterError",
     "RadiokitError",
     "TargetError",
@@ -127,3 +128,7 @@ class MissingExtraError(RadiokitError, ImportError):
             module=module,
             extra=extra,
         )
+
+
+class NonFiniteError(RadiokitError, ArithmeticError):
+    """An integrand or a sample is NaN or infinite. ``fields`` has the ``value`` and where it is known ``at``."""

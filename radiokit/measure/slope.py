@@ -1,0 +1,203 @@
+"""Slope space: directions and weights that resolve a reflection lobe of any width up to the horizon."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from radiokit.facts.errors import ParameterError
+
+__all__ = ["gauss_legendre", "slope_map", "slope_rule", "slope_width"]
+
+FloatArray = npt.NDArray[np.float64]
+
+PROBE = (48, 16)
+PROBE_WIDTH = 1e-5
+
+
+@lru_cache(maxsize=64)
+def gauss_legendre(n: int) -> tuple[FloatArray, FloatArray]:
+    """Return the nodes and weights of the n-point Gauss-Legendre rule on [0, 1].
+
+    >>> x, w = gauss_legendre(3)
+    >>> round(float(w @ x**5), 15)
+    0.166666666666667
+    """
+    x, w = np.polynomial.legendre.leggauss(n)
+    x, w = (x + 1) / 2, w / 2
+    x.setflags(write=False)
+    w.setflags(write=False)
+    return x, w
+
+
+def slope_map(
+    wo: FloatArray, width: npt.ArrayLike, x: FloatArray, s: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Map the unit square's (x, s) to directions on one side of the plane of incidence.
+
+    With T = tanθo and y = asinh(T) cos(π s), the azimuth of the half vector's slope is cosφ = sinh(y)/T.
+    The cosine of the incident direction is then cosθo (e^y − ρ)(ρ + e^−y)/(1 + ρ²), so that the horizon is
+    exactly ρ = e^y; the radius runs over it as ρ = w sinh(L x (2 − x)).
+
+    Parameters
+    ----------
+    wo : ndarray, broadcastable with ``x``, shape (..., 3)
+        Unit vectors above the horizon.
+    width : array_like
+        The lobe's width w in slope, > 0.
+    x, s : ndarray, shape (...)
+        Points of the unit square.
+
+    Returns
+    -------
+    wi : ndarray, shape (..., 3)
+        Unit vectors. Mirror them at the plane of incidence with ``slope_rule`` for the other half.
+    weight : ndarray, shape (...)
+        Solid angle per unit of x and s [sr], for both halves together.
+    rho : ndarray, shape (...)
+        The half vector's slope.
+    """
+    width = np.asarray(width, dtype=float)
+    cos_o = wo[..., 2]
+    sin_o = np.hypot(wo[..., 0], wo[..., 1])
+    tan_o = sin_o / cos_o
+    angle = np.pi * s
+    big_y = np.arcsinh(tan_o)
+    y = big_y * np.cos(angle)
+    low, high = big_y * np.sin(angle / 2) ** 2, big_y * np.cos(angle / 2) ** 2  # (Y ∓ y)/2
+    root = 2 * np.sqrt(np.sinh(low) * np.cosh(high) * np.sinh(high) * np.cosh(low))  # tanθo sinφ
+    flat = tan_o < 1e-6  # the limit of normal incidence, where sinh(y)/tanθo is 0/0
+    safe_tan, safe_root = np.where(flat, 1.0, tan_o), np.where(flat | (root == 0), 1.0, root)
+    cos_phi = np.where(flat, np.cos(angle), np.sinh(y) / safe_tan)
+    sin_phi = np.where(flat, np.sin(angle), root / safe_tan)
+    jacobian = np.where(flat, 1.0, big_y * np.cosh(y) * np.sin(angle) / safe_root)
+
+    edge = np.exp(y)
+    length = np.arcsinh(edge / width)
+    t = length * (x * (2 - x))
+    rho = width * np.sinh(t)
+    gap = 2 * width * np.cosh((length + t) / 2) * np.sinh(length * (1 - x) ** 2 / 2)  # e^y − ρ
+    square = 1 + rho * rho
+    inner = 1 + rho * np.sinh(y)  # (wo·h) √(1 + ρ²) / cosθo
+    lift = 2 * cos_o * inner / square
+    # In the plane of incidence, then turned to the azimuth of wo.
+    along, across = lift * rho * cos_phi - sin_o, lift * rho * sin_phi
+    upright = sin_o == 0
+    radius = np.where(upright, 1.0, sin_o)
+    c = np.where(upright, 1.0, wo[..., 0] / radius)
+    d = np.where(upright, 0.0, wo[..., 1] / radius)
+    wi = np.stack(
+        [
+            c * along - d * across,
+            d * along + c * across,
+            cos_o * gap * (rho + 1 / edge) / square,
+        ],
+        axis=-1,
+    )
+    radial = width * np.cosh(t) * length * (1 - x)
+    weight = 16 * np.pi * cos_o * inner * rho / (square * square) * radial * jacobian
+    return wi, weight, rho
+
+
+def slope_rule(
+    wo: npt.ArrayLike,
+    width: npt.ArrayLike,
+    n: int | tuple[int, int],
+    *,
+    symmetric: bool = False,
+) -> tuple[FloatArray, FloatArray]:
+    """Return directions and solid-angle weights that resolve a lobe around the mirror direction of ``wo``.
+
+    Gauss-Legendre in the radius and a midpoint rule in the azimuth of ``slope_map``: no node is wasted
+    below the horizon and no kink is left, so the rule converges geometrically for smooth lobes.
+
+    Parameters
+    ----------
+    wo : array_like, shape (3,) or (M, 3)
+        Unit vectors above the horizon.
+    width : float or array_like, shape (M,)
+        The lobe's width in slope, > 0: α of a microfacet model, 1 for a diffuse one. A width wrong by a
+        factor of 4 still converges, with about twice the nodes along each axis.
+    n : int or (int, int)
+        Nodes along the radius and the azimuth.
+    symmetric : bool
+        Whether the integrand is even in the azimuth relative to ``wo``; half the nodes then suffice.
+
+    Returns
+    -------
+    wi : ndarray, shape (N, 3) or (M, N, 3)
+        Unit vectors; N is twice the number of nodes unless ``symmetric``.
+    weight : ndarray, shape (N,) or (M, N)
+        Weights [sr]; they sum to 2π for a converged rule.
+
+    Raises
+    ------
+    ParameterError
+        When ``wo`` is not above the horizon or ``width`` is not positive.
+
+    >>> wi, weight = slope_rule((0.6, 0.0, 0.8), 1.0, 48)
+    >>> round(float(weight @ wi[:, 2]), 9)  # ∫ cosθ dω = π
+    3.141592654
+    """
+    wo = np.asarray(wo, dtype=float)
+    if not np.all(wo[..., 2] > 0):
+        raise ParameterError("wo", wo.tolist(), "above the horizon (z > 0)")
+    width = np.broadcast_to(np.asarray(width, dtype=float), wo.shape[:-1])
+    if not np.all(width > 0):
+        raise ParameterError("width", width.tolist(), "greater than 0")
+    wi, weight, _ = _grid(wo, width, n)
+    if not symmetric:
+        wi = np.concatenate([wi, mirrored(wi, wo[..., None, :])], axis=-2)
+        weight = np.concatenate([weight, weight], axis=-1) / 2
+    return wi, weight
+
+
+def mirrored(wi: FloatArray, wo: FloatArray) -> FloatArray:
+    """Return ``wi`` mirrored at the plane that holds ``wo`` and the normal."""
+    radius = np.hypot(wo[..., 0], wo[..., 1])
+    upright = radius == 0
+    safe = np.where(upright, 1.0, radius)
+    across_x = np.where(upright, 0.0, -wo[..., 1] / safe)
+    across_y = np.where(upright, 1.0, wo[..., 0] / safe)
+    twice = 2 * (wi[..., 0] * across_x + wi[..., 1] * across_y)
+    return np.stack([wi[..., 0] - twice * across_x, wi[..., 1] - twice * across_y, wi[..., 2]], axis=-1)
+
+
+def _grid(
+    wo: FloatArray, width: FloatArray, n: int | tuple[int, int]
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    radial, azimuthal = (n, n) if isinstance(n, int) else n
+    x, wx = gauss_legendre(radial)
+    s = (np.arange(azimuthal) + 0.5) / azimuthal
+    wi, weight, rho = slope_map(wo[..., None, None, :], width[..., None, None], x[:, None], s)
+    weight = weight * (wx[:, None] / azimuthal)
+    size = (*wo.shape[:-1], radial * azimuthal)
+    return wi.reshape(*size, 3), weight.reshape(size), np.broadcast_to(rho, weight.shape).reshape(size)
+
+
+def slope_width(integrand: Callable[[FloatArray], Any], wo: npt.ArrayLike) -> tuple[float, int]:
+    """Find the width at which ``slope_rule`` resolves an unknown integrand, and the evaluations spent.
+
+    The width is the median slope of the half vector under the integrand's own mass, seen by a rule whose
+    radii are spread evenly over five decades. It is α for GGX, and about 0.5 for a diffuse lobe.
+
+    >>> width, _ = slope_width(lambda wi: wi[:, 2], (0.0, 0.0, 1.0))
+    >>> 0.3 < width < 0.6
+    True
+    """
+    wo = np.asarray(wo, dtype=float)
+    wi, weight, rho = _grid(wo, np.asarray(PROBE_WIDTH), PROBE)
+    other = mirrored(wi, wo[None, :])
+    value = np.asarray(integrand(np.concatenate([wi, other])), dtype=float)
+    value = np.abs(value.reshape(len(value), -1)).sum(axis=1)
+    mass = weight * (value[: len(wi)] + value[len(wi) :])
+    if not np.all(np.isfinite(mass)) or mass.sum() == 0:
+        return 1.0, len(value)
+    order = np.argsort(rho)
+    share = np.cumsum(mass[order]) / mass.sum()
+    median = rho[order][np.searchsorted(share, 0.5)]
+    return float(np.clip(median, 10 * PROBE_WIDTH, 1.0)), len(value)
