@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from radiokit.contracts.parameters import check_parameters
 from radiokit.contracts.registry import Registry
+from radiokit.contracts.vectors import check_vectors
 from radiokit.facts.errors import RadiokitError
 from radiokit.facts.estimate import Estimate
 
@@ -23,7 +24,8 @@ class Emitter(ABC):
 
     Subclasses are frozen, keyword-only dataclasses, one a file. Directions are world-space unit vectors
     ``(N, 3)`` from the receiver towards the light. An emitter is either *delta* (it arrives from a finite
-    number of directions: ``incident``) or it has a radiance (``radiance``, ``sample``, ``pdf``).
+    number of directions: ``incident``) or it has a radiance (``radiance_from``, ``sample``, ``pdf``). The
+    methods are named apart from the parameters ``radiance`` and ``irradiance``.
     """
 
     name: ClassVar[str] = ""
@@ -31,12 +33,13 @@ class Emitter(ABC):
 
     def __post_init__(self) -> None:
         check_parameters(self)
+        check_vectors(self)
 
     def incident(self, position: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return a delta light's directions (K, 3) and the irradiances normal to them (K,) [W m⁻²]."""
         raise RadiokitError(f"{self.name} is no delta light: it has a radiance")
 
-    def radiance(self, direction: FloatArray, position: FloatArray) -> FloatArray:
+    def radiance_from(self, direction: FloatArray, position: FloatArray) -> FloatArray:
         """Return the radiance that arrives from ``direction`` (N, 3): (N,) [W m⁻² sr⁻¹]."""
         raise RadiokitError(f"{self.name} is a delta light: it has no radiance")
 
@@ -48,11 +51,19 @@ class Emitter(ABC):
         """Return the density (N,) [sr⁻¹] with which ``sample`` picks ``direction``."""
         raise RadiokitError(f"{self.name} is a delta light: its direction is not sampled")
 
+    def dome(self, position: FloatArray) -> tuple[FloatArray, ...] | None:
+        """Return the half-spaces that an environment fills smoothly, by their unit normals (3,).
+
+        ``()`` is the whole sphere, ``(n,)`` the half-space around ``n``, and None, the default, anything
+        else. Quadrature takes its coordinates from it.
+        """
+        return None
+
     @abstractmethod
     def solid_angle(self, position: FloatArray) -> Estimate:
         """Return the solid angle [sr] that the light subtends at ``position``; 0 for a delta light."""
 
-    def irradiance(self, position: FloatArray, normal: FloatArray) -> Estimate | None:
+    def irradiance_at(self, position: FloatArray, normal: FloatArray) -> Estimate | None:
         """Return the closed-form irradiance [W m⁻²] on a receiver, or None where there is none."""
         return None
 
