@@ -64,14 +64,16 @@ class BSDF(ABC):
     name: ClassVar[str] = ""
     SOURCE: ClassVar[Source]
     isotropic: ClassVar[bool] = True
+    precision: float = float(np.finfo(float).eps)
+    """Rounding unit of the values; larger than float64's for a function that computes in float32."""
 
     def __post_init__(self) -> None:
         check_parameters(self)
 
     @property
     @abstractmethod
-    def claims(self) -> Claims:
-        """What the model claims, for these parameters."""
+    def claims(self) -> Claims | None:
+        """What the model claims, for these parameters; None where nothing is claimed."""
 
     @abstractmethod
     def evaluate(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
@@ -97,6 +99,13 @@ class BSDF(ABC):
 
         α for a microfacet model, 1 for a diffuse one. Quadrature places its nodes by it; being wrong by a
         factor of 4 costs evaluations, not accuracy.
+        """
+        return None
+
+    def diffuse_reflectance(self) -> float | None:
+        """Return ρ of a model that is ρ/π for every pair of directions above the surface, None for another.
+
+        Its reflected radiance is ρE/π, whatever the irradiance E comes from.
         """
         return None
 
