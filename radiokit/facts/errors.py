@@ -11,6 +11,7 @@ __all__ = [
     "MissingExtraError",
     "NonFiniteError",
     "ParameterError",
+    "QuantityKindError",
     "RadiokitError",
     "TargetError",
     "UnknownNameError",
@@ -78,19 +79,28 @@ class ParameterError(RadiokitError, ValueError):
 class UnknownNameError(RadiokitError, LookupError):
     """A name that nothing answers to; the message lists what there is.
 
+    ``aliases`` are spellings that are understood, and so may be suggested, but are not listed.
+
     >>> print(UnknownNameError("BSDF", "gxg", ["ggx", "phong"]))
     unknown BSDF 'gxg'; did you mean 'ggx'? Known: ggx, phong
     """
 
-    def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
+    def __init__(self, kind: str, name: str, known: Iterable[str], aliases: Iterable[str] = ()) -> None:
         known = sorted(known)
-        guess = suggestion(name, known) or "."
+        guess = suggestion(name, [*known, *aliases]) or "."
         super().__init__(
             f"unknown {kind} {name!r}{guess} Known: {', '.join(known) or 'none'}",
             kind=kind,
             name=name,
             known=known,
         )
+
+
+class QuantityKindError(RadiokitError, TypeError):
+    """Values of different kinds of quantity were added, compared or converted; units may agree or not.
+
+    ``fields`` has ``left`` and ``right``, the names of the two kinds; ``right`` is None where it is unknown.
+    """
 
 
 class CallableError(RadiokitError):
