@@ -1,0 +1,140 @@
+"""Scene: the receiver, and what arrives at it: irradiance and solid angle of an emitter."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from radiokit.contracts.emitter import Emitter
+from radiokit.contracts.vectors import as_point, as_unit
+from radiokit.facts.directions import frame, to_local, to_world
+from radiokit.facts.errors import ParameterError
+from radiokit.facts.estimate import Estimate
+from radiokit.measure.quadrature import box
+
+__all__ = ["Receiver", "check_emitter", "irradiance", "solid_angle"]
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Receiver:
+    """A point on a surface: its position and its normal, which is normalised.
+
+    >>> Receiver((2, 0, 0)).to_local(np.array([1.0, 0.0, 0.0]))
+    array([0., 0., 1.])
+    """
+
+    normal: Any = (0.0, 0.0, 1.0)
+    position: Any = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "normal", as_unit("normal", self.normal))
+        object.__setattr__(self, "position", as_point("position", self.position))
+
+    @cached_property
+    def axis(self) -> FloatArray:
+        """The unit normal (3,)."""
+        return np.array(self.normal)
+
+    @cached_property
+    def origin(self) -> FloatArray:
+        """The position (3,) [m]."""
+        return np.array(self.position)
+
+    @cached_property
+    def _frame(self) -> FloatArray:
+        return frame(self.axis)
+
+    def to_local(self, w: FloatArray) -> FloatArray:
+        """Return world directions (..., 3) in the frame whose z axis is the normal."""
+        return to_local(self._frame, w)
+
+    def to_world(self, w: FloatArray) -> FloatArray:
+        """Return directions (..., 3) of the local frame in world coordinates."""
+        return to_world(self._frame, w)
+
+
+def check_emitter(emitter: Any) -> Emitter:
+    """Return ``emitter`` if it is one.
+
+    Raises
+    ------
+    ParameterError
+        When it is none.
+    """
+    if not isinstance(emitter, Emitter):
+        raise ParameterError("emitter", emitter, "an emitter, such as emitter('point', ...)")
+    return emitter
+
+
+def irradiance(
+    emitter: Emitter,
+    *,
+    normal: npt.ArrayLike = (0.0, 0.0, 1.0),
+    position: npt.ArrayLike = (0.0, 0.0, 0.0),
+    rtol: float = 1e-8,
+) -> Estimate:
+    """Return the irradiance E = ∫ L cosθ dω [W m⁻²] of an emitter on one side of a receiver.
+
+    By the emitter's closed form where it has one; otherwise by quadrature over the square from which the
+    emitter samples its directions.
+
+    Parameters
+    ----------
+    emitter : Emitter
+    normal : array_like, shape (3,)
+        The receiver's normal in world coordinates; any length but 0.
+    position : array_like, shape (3,)
+        Where the receiver is [m].
+    rtol : float
+        Relative tolerance of the quadrature, in (0, 1).
+
+    Raises
+    ------
+    ParameterError
+        When ``normal`` or ``position`` is no vector, or the receiver lies on the light.
+
+    >>> from radiokit.emitters.directional import Directional
+    >>> sun = Directional(direction=(0, 3, 4), irradiance=1000.0)
+    >>> irradiance(sun).value
+    800.0
+    """
+    receiver, light = Receiver(normal, position), check_emitter(emitter)
+    start = time.perf_counter()
+    found = light.irradiance_at(receiver.origin, receiver.axis)
+    if found is not None:
+        return replace(found, seconds=time.perf_counter() - start)
+
+    def arriving(u: FloatArray) -> FloatArray:
+        wi, density = light.sample(u, receiver.origin)
+        cosine = np.maximum(wi @ receiver.axis, 0.0)
+        return _over(light.radiance_from(wi, receiver.origin) * cosine, density)
+
+    return box(arriving, (0.0, 0.0), (1.0, 1.0), rtol=rtol)
+
+
+def _over(value: FloatArray, density: FloatArray) -> FloatArray:
+    """Divide by a density, 0 where it is 0."""
+    return np.divide(value, density, out=np.zeros_like(value), where=density > 0)
+
+
+def solid_angle(emitter: Emitter, *, position: npt.ArrayLike = (0.0, 0.0, 0.0)) -> Estimate:
+    """Return the solid angle [sr] that an emitter subtends at ``position`` (3,) [m]; 0 for a delta light.
+
+    Raises
+    ------
+    ParameterError
+        When ``position`` is no point, or lies on the light.
+
+    >>> from radiokit.emitters.constant import Constant
+    >>> round(float(solid_angle(Constant()).value) / np.pi, 12)
+    4.0
+    """
+    receiver = Receiver(position=position)
+    return check_emitter(emitter).solid_angle(receiver.origin)
