@@ -1,7 +1,7 @@
-"""Directions: unit vectors, angles, frames and caps, without losing digits. Nothing here knows optics' laws.
+"""Directions: unit vectors, angles, frames and caps, without losing digits.
 
 ``check_directions``, ``unit``, ``frame``, the spherical coordinates and the caps check what they are given.
-The other functions are kernels: they trust their arguments to be unit vectors, as a model's ``evaluate`` does.
+The other functions are kernels: they trust vectors to be of unit length, as a model's ``evaluate`` does.
 """
 
 from __future__ import annotations
@@ -299,7 +299,7 @@ def refract(
         z by default.
     eta : array_like, shape (...)
         Index on the side that the normal leaves behind, over the index on the side that it points to
-        (η_t/η_i for light from outside); above 0. For ``w`` below the surface the ratio is inverted.
+        (η_t/η_i for light from outside), in [1e-100, 1e100]. For ``w`` below the surface it is inverted.
 
     Returns
     -------
@@ -311,7 +311,7 @@ def refract(
     Raises
     ------
     ParameterError
-        When ``eta`` is not a finite number above 0.
+        When ``eta`` is not in that range.
 
     Source: Pharr, Jakob, Humphreys (2023), Physically Based Rendering, 4th edition, section 9.3.3.
 
@@ -319,9 +319,9 @@ def refract(
     >>> [round(float(x), 6) for x in direction], bool(total)
     ([-0.4, 0.0, -0.916515], False)
     """
-    allowed = "a finite number above 0"
+    allowed = "a number in [1e-100, 1e100]"
     ratio = _numbers("eta", eta, allowed)
-    _reject("eta", ratio, np.asarray(~((ratio > 0.0) & np.isfinite(ratio))), allowed)
+    _reject("eta", ratio, np.asarray(~((ratio >= 1e-100) & (ratio <= 1e100))), allowed)
     w = np.asarray(w, dtype=np.float64)
     n = np.array([0.0, 0.0, 1.0]) if normal is None else np.asarray(normal, dtype=np.float64)
     cosine = dot(w, n)
@@ -329,11 +329,11 @@ def refract(
     # Indices of the far and the near side: 1/η is never rounded, so η next to 1 keeps its digits both ways.
     far = np.where(side[..., 0] > 0.0, ratio, 1.0)
     near = np.where(side[..., 0] > 0.0, 1.0, ratio)
-    # The part along the surface: w − (w·n)n, from the small w ∓ n so that it keeps its digits near the normal.
+    # The part along the surface, w − (w·n)n, from the small w ∓ n: it keeps its digits near the normal.
     offset = w - side * n
     along = offset - dot(offset, n)[..., None] * n
     sine = _length(along)
-    # (far cos θt)² = far² − near² sin² = far² − near² + near² cos²: each form is exact where the other cancels.
+    # (far cos θt)² = far² − near² sin² = far² − near² + near² cos²: each is good where the other cancels.
     by_sine = (far - near * sine) * (far + near * sine)
     by_cosine = (far - near) * (far + near) + (near * cosine) ** 2
     square = np.where((far < near) & (cosine * cosine > 0.5), by_sine, by_cosine)
