@@ -36,7 +36,7 @@ class Moments:
     the mean, as the sum of squares does not. All but ``count`` are scalars or have shape ``(K,)``.
 
     Source: Chan, Golub, LeVeque (1983), Algorithms for computing the sample variance, The American
-    Statistician 37(3), equations 1.5 and 2.1; doi:10.1080/00031305.1983.10483115.
+    Statistician 37(3), the corrected two-pass algorithm and the pairwise update; doi:10.1080/00031305.1983.10483115.
 
     >>> moments = Moments.of([1e9, 1e9 + 2]).merge(Moments.of([1e9 + 1]))
     >>> float(moments.mean - 1e9), float(moments.variance)
