@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from radiokit.facts.errors import ParameterError
 
-__all__ = ["gauss_legendre", "slope_map", "slope_rule", "slope_width"]
+__all__ = ["gauss_legendre", "mirrored", "slope_inverse", "slope_map", "slope_rule", "slope_width"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -201,3 +201,32 @@ def slope_width(integrand: Callable[[FloatArray], Any], wo: npt.ArrayLike) -> tu
     share = np.cumsum(mass[order]) / mass.sum()
     median = rho[order][np.searchsorted(share, 0.5)]
     return float(np.clip(median, 10 * PROBE_WIDTH, 1.0)), len(value)
+
+
+def slope_inverse(wo: FloatArray, width: float, wi: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Invert ``slope_map``: return x, s, and whether ``wi`` (N, 3) lies on the mirrored side.
+
+    >>> wo = np.array([0.6, 0.0, 0.8])
+    >>> wi, _, _ = slope_map(wo, 0.3, np.array([0.25]), np.array([0.75]))
+    >>> x, s, far = slope_inverse(wo, 0.3, wi)
+    >>> round(float(x[0]), 12), round(float(s[0]), 12), bool(far[0])
+    (0.25, 0.75, False)
+    """
+    total = wi + wo
+    sin_o = np.hypot(wo[0], wo[1])
+    along_axis = np.array([1.0, 0.0]) if sin_o == 0 else wo[:2] / sin_o
+    along = total[:, :2] @ along_axis
+    across = total[:, 1] * along_axis[0] - total[:, 0] * along_axis[1]
+    radius = np.hypot(along, across)
+    rho = radius / total[:, 2]
+    cos_phi = np.divide(along, radius, out=np.ones_like(radius), where=radius > 0)
+    tan_o = sin_o / wo[2]
+    if tan_o < 1e-6:
+        y, ratio = np.zeros_like(rho), cos_phi
+    else:
+        y = np.arcsinh(tan_o * cos_phi)
+        ratio = y / np.arcsinh(tan_o)
+    s = np.arctan2(np.sqrt(np.clip(1 - ratio * ratio, 0.0, 1.0)), ratio) / np.pi
+    share = np.arcsinh(rho / width) / np.arcsinh(np.exp(y) / width)
+    share = np.clip(share, 0.0, 1.0)
+    return share / (1 + np.sqrt(1 - share)), s, across < 0

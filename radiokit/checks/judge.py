@@ -1,0 +1,126 @@
+"""The judge: puts a BSDF before every law and reports the verdicts."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import numpy as np
+
+from radiokit.checks.energy import energy
+from radiokit.checks.probes import seconds_per_evaluation
+from radiokit.checks.reciprocity import reciprocity
+from radiokit.checks.sampling import sampling
+from radiokit.checks.values import values
+from radiokit.contracts.blackbox import as_bsdf
+from radiokit.contracts.bsdf import BSDF
+from radiokit.facts.errors import ParameterError, UnknownNameError
+from radiokit.facts.report import Report
+from radiokit.facts.verdict import TOLERANCE, Evidence, Outcome, Verdict
+
+__all__ = ["LAWS", "check"]
+
+LAWS = ("values", "reciprocity", "energy", "sampling")
+
+# Evaluations that each law spends when the function is fast, and its share when it is slow.
+_PLENTY = {"values": 1 << 16, "reciprocity": 1 << 17, "energy": 8_000_000}
+_SHARE = {"values": 0.05, "reciprocity": 0.25, "energy": 0.65}
+
+
+def check(
+    f: BSDF | Callable[..., Any],
+    *,
+    laws: Iterable[str] = LAWS,
+    tolerance: float = TOLERANCE,
+    seconds: float = 60.0,
+    tests: int = 1,
+) -> Report:
+    """Check a BSDF for finite values, reciprocity, energy conservation, and its sampler.
+
+    Searches are deterministic, and the samples' seed derives from the model's name and parameters: the same
+    function gets the same report. A function without a sampler is not judged for one.
+
+    Parameters
+    ----------
+    f : BSDF or callable
+        A callable f(wi, wo) [sr⁻¹] is wrapped by ``as_bsdf``.
+    laws : iterable of str
+        Which of ``values``, ``reciprocity``, ``energy``, ``sampling``.
+    tolerance : float
+        How far beyond a limit a value may lie.
+    seconds : float
+        Aimed-at time for a slow function: searches become coarser, and say so.
+    tests : int
+        How many models share the level of the statistical tests.
+
+    Returns
+    -------
+    Report
+
+    Raises
+    ------
+    CallableError
+        When the function raises, or returns what is no value; it names the directions.
+    ParameterError, UnknownNameError
+        When an argument is out of range.
+
+    >>> report = check(lambda wi, wo: 1 / np.pi + 0 * wi[:, 2])
+    >>> report.ok, report["energy"].message[:16]
+    (True, 'sup 1 ± ')
+    """
+    chosen = list(laws)
+    for law in chosen:
+        if law not in LAWS:
+            raise UnknownNameError("law", law, LAWS)
+    if not seconds > 0:
+        raise ParameterError("seconds", seconds, "greater than 0")
+    if not 0 <= tolerance < 1:
+        raise ParameterError("tolerance", tolerance, "in [0, 1)")
+    model = as_bsdf(f)
+    cost = seconds_per_evaluation(model)
+    budget = {law: int(min(plenty, max(64, _SHARE[law] * seconds / cost))) for law, plenty in _PLENTY.items()}
+    notes = []
+    if budget["energy"] < _PLENTY["energy"]:
+        notes.append(
+            f"one evaluation takes {cost * 1e3:.2g} ms: the searches are coarser than for a fast function"
+        )
+    verdicts: list[Verdict] = []
+    if "values" in chosen:
+        verdicts.append(values(model, count=budget["values"] // 2))
+    proved = False
+    if "reciprocity" in chosen:
+        verdicts.append(reciprocity(model, count=budget["reciprocity"] // 2, tolerance=tolerance))
+        proved = verdicts[-1].evidence is Evidence.PROVED
+    if "energy" in chosen:
+        verdicts.append(energy(model, tolerance=tolerance, budget=budget["energy"], reciprocal=proved))
+    if "sampling" in chosen and getattr(model, "has_sampler", True):
+        samples = int(np.clip(0.05 * seconds / cost / 6, 1 << 10, 1 << 17))
+        verdicts.append(sampling(model, samples=samples, seed=_seed(model), tests=tests))
+    if any(v.check == "values" and "asked again" in v.message for v in verdicts):
+        verdicts = [_doubted(verdict) for verdict in verdicts]
+    return Report(
+        subject=getattr(model, "label", model.name),
+        verdicts=tuple(verdicts),
+        notes=(*notes, *getattr(model, "notes", ())),
+        parameters={} if hasattr(model, "label") else model.parameters(),
+    )
+
+
+def _seed(model: BSDF) -> int:
+    return int.from_bytes(hashlib.sha256(repr(model).encode()).digest()[:8], "big")
+
+
+def _doubted(verdict: Verdict) -> Verdict:
+    """A function that answers differently each time cannot be cleared, nor convicted, of anything else."""
+    if verdict.check == "values":
+        return verdict
+    from dataclasses import replace
+
+    return replace(
+        verdict,
+        outcome=Outcome.INCONCLUSIVE,
+        evidence=Evidence.MEASURED,
+        message=f"not repeatable, so not judged; this time: {verdict.outcome}, {verdict.message}",
+        witness=None,
+    )

@@ -1,0 +1,104 @@
+"""Probes: the pairs of directions at which the judges look, and what a look costs."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from radiokit.contracts.bsdf import BSDF
+from radiokit.facts.directions import reflect
+
+__all__ = ["GRAZING", "channels", "isotropic", "kronecker", "pairs", "polar", "seconds_per_evaluation"]
+
+FloatArray = npt.NDArray[np.float64]
+
+GRAZING = np.deg2rad(89.99)
+"""The largest polar angle at which the judges integrate [rad]."""
+
+_SMALLEST_COSINE = float(np.cos(np.deg2rad(89.9999)))
+
+
+def kronecker(count: int, dimensions: int) -> FloatArray:
+    """Return ``count`` low-discrepancy points in the unit cube: the additive recurrence R_d.
+
+    The multipliers are powers of the reciprocal of the root of x^(d+1) = x + 1, the generalised golden
+    ratio. Any further points continue the same sequence.
+
+    >>> kronecker(2, 2).round(3).tolist()
+    [[0.255, 0.07], [0.01, 0.64]]
+    """
+    root = 1.5
+    for _ in range(64):
+        root = (1 + root) ** (1 / (dimensions + 1))
+    steps = root ** -np.arange(1.0, dimensions + 1)
+    points: FloatArray = (0.5 + np.arange(1, count + 1)[:, None] * steps) % 1.0
+    return points
+
+
+def polar(cosine: npt.ArrayLike, phi: npt.ArrayLike) -> FloatArray:
+    """Return unit vectors with the given cosine of the polar angle and azimuth."""
+    cosine, phi = np.broadcast_arrays(np.asarray(cosine, dtype=float), phi)
+    sine = np.sqrt((1 - cosine) * (1 + cosine))
+    return np.stack([sine * np.cos(phi), sine * np.sin(phi), cosine], axis=-1)
+
+
+def pairs(count: int) -> tuple[FloatArray, FloatArray]:
+    """Return ``count`` pairs of directions on the upper hemisphere, hard ones included.
+
+    Half are uniform in solid angle, so that an odd region of any shape is hit by its share; a quarter
+    has cosines spread evenly over six decades, down to 89.9999°; a quarter lies near the mirror pair,
+    with offsets spread evenly over five decades.
+    """
+    u = kronecker(count, 4)
+    cos_i, cos_o = u[:, 0].copy(), u[:, 1].copy()
+    phi_i, phi_o = 2 * np.pi * u[:, 2], 2 * np.pi * u[:, 3]
+    kind = np.arange(count) % 4
+    for cosine in (cos_i, cos_o):
+        cosine[:] = np.clip(cosine, _SMALLEST_COSINE, 1.0)
+        cosine[kind == 2] = _SMALLEST_COSINE ** cosine[kind == 2]
+    wi, wo = polar(cos_i, phi_i), polar(cos_o, phi_o)
+    near = kind == 3
+    mirror = reflect(wo[near])
+    offset = 10.0 ** (-5 * u[near, 0])
+    moved = mirror + offset[:, None] * polar(np.zeros(near.sum()), phi_i[near])
+    moved[:, 2] = np.maximum(moved[:, 2], _SMALLEST_COSINE)
+    wi[near] = moved / np.linalg.norm(moved, axis=1)[:, None]
+    return wi, wo
+
+
+def channels(values: Any) -> FloatArray:
+    """Return values as (N, K): a single wavelength is one column."""
+    values = np.asarray(values, dtype=float)
+    return values[:, None] if values.ndim == 1 else values
+
+
+def isotropic(f: BSDF, count: int = 512) -> bool:
+    """Return whether turning both directions about the normal leaves f unchanged, as far as can be seen."""
+    wi, wo = pairs(count)
+    angle = 2 * np.pi * kronecker(count, 1)[:, 0]
+    c, s = np.cos(angle), np.sin(angle)
+
+    def turned(w: FloatArray) -> FloatArray:
+        return np.stack([c * w[:, 0] - s * w[:, 1], s * w[:, 0] + c * w[:, 1], w[:, 2]], axis=-1)
+
+    one, two = channels(f.evaluate(wi, wo)), channels(f.evaluate(turned(wi), turned(wo)))
+    usable = np.isfinite(one) & np.isfinite(two)
+    # A turn rounds the directions, and a narrow lobe magnifies that: only clear differences count.
+    return bool(
+        np.all(np.abs(one - two)[usable] <= 1e-3 * np.maximum(np.abs(one), np.abs(two))[usable] + 1e-9)
+    )
+
+
+def seconds_per_evaluation(f: BSDF) -> float:
+    """Measure what one evaluation costs [s], with arrays as large as the function's speed allows."""
+    count, seconds = 4, 0.0
+    while seconds < 2e-3 and count < 1 << 14:
+        count *= 4
+        wi, wo = pairs(count)
+        start = time.perf_counter()
+        f.evaluate(wi, wo)
+        seconds = time.perf_counter() - start
+    return seconds / count

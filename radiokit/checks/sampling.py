@@ -1,0 +1,225 @@
+"""Sampling: sample, pdf and evaluate agree with each other, point by point and in distribution."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import numpy as np
+
+from radiokit.checks.probes import channels, polar
+from radiokit.contracts.albedo import directional_albedo
+from radiokit.contracts.bsdf import BSDF, FloatArray
+from radiokit.facts.errors import NonFiniteError
+from radiokit.facts.verdict import Evidence, Outcome, Verdict, Witness
+from radiokit.measure.quadrature import hemisphere
+from radiokit.measure.slope import gauss_legendre, mirrored, slope_inverse, slope_map, slope_width
+
+__all__ = ["ANGLES_DEG", "LEVEL", "sampling"]
+
+CLAIM = "sample follows pdf, and its weight is f |cos θi| / pdf"
+ANGLES_DEG = (0.0, 30.0, 60.0, 80.0, 85.0, 89.5)
+LEVEL = 1e-6
+"""Chance of rejecting a right sampler, over all tests of one verdict (and of a suite, see ``tests``)."""
+
+CELLS = (12, 12)  # along radius and azimuth, on each side of the plane of incidence
+NODES = 8  # Gauss-Legendre nodes along each side of a cell
+WEIGHT = 1e-6  # relative disagreement of a weight that is let pass
+
+
+def sampling(f: BSDF, *, samples: int = 1 << 17, seed: int = 0, tests: int = 1) -> Verdict:
+    """Judge whether the sampler of ``f`` agrees with its pdf and its values.
+
+    At six outgoing directions up to 89.5°: every weight equals f cosθi / pdf; the pdf integrates to at most
+    1 and falls short by exactly the share of samples that leave below the horizon; the samples follow it
+    (chi-square over cells that are fine where the lobe is); the weights' mean is the albedo (z-test).
+
+    Parameters
+    ----------
+    samples : int
+        For each direction.
+    seed : int
+    tests : int
+        How many verdicts of this kind the level is shared among (Šidák).
+    """
+    from radiokit.measure.statistics import sidak
+
+    start = time.perf_counter()
+    p_least, evaluations = 1.0, 0
+    level = sidak(LEVEL, tests * 2 * len(ANGLES_DEG))
+    details: dict[str, Any] = {"samples": samples, "angles_deg": list(ANGLES_DEG), "level": level}
+    problem: tuple[str, Witness] | None = None
+    rows = []
+    for k, theta in enumerate(ANGLES_DEG):
+        wo = polar(np.cos(np.deg2rad([theta])), [0.7 * k])[0]
+        rng = np.random.default_rng([seed, k])
+        u = rng.random((samples, 2))
+        wi, weight = f.sample(u, np.broadcast_to(wo, (samples, 3)))
+        evaluations += samples
+        problem = _pointwise(f, u, wi, weight, wo)
+        if problem is None:
+            row, problem = _distribution(f, wi, weight, wo, level)
+            evaluations += int(row.pop("evaluations", 0))
+            rows.append({"theta_deg": theta, **row})
+            p_least = min(p_least, row.get("p_chi_square", 1.0), row.get("p_albedo", 1.0))
+        if problem is not None:
+            problem = (f"{problem[0]}, at θo = {theta:g}°", problem[1])
+            break
+    details["rows"] = rows
+    return Verdict(
+        check="sampling",
+        claim=CLAIM,
+        outcome=Outcome.HOLDS if problem is None else Outcome.VIOLATED,
+        evidence=Evidence.MEASURED if problem is None else Evidence.REFUTED,
+        message=(
+            f"{samples} samples at each of {len(ANGLES_DEG)} directions; smallest p = {p_least:.2g}"
+            if problem is None
+            else problem[0]
+        ),
+        witness=None if problem is None else problem[1],
+        p_value=p_least,
+        evaluations=evaluations,
+        seconds=time.perf_counter() - start,
+        details=details,
+    )
+
+
+def _pointwise(
+    f: BSDF, u: FloatArray, wi: FloatArray, weight: FloatArray, wo: FloatArray
+) -> tuple[str, Witness] | None:
+    """Look at each sample: a unit vector, a finite weight, and the weight that f and pdf say."""
+    weight = channels(weight)
+    held = np.broadcast_to(wo, wi.shape)
+
+    def witness(row: int, **values: Any) -> Witness:
+        at = {"u": u[row].tolist(), "wi": wi[row].tolist(), "wo": wo.tolist()}
+        return Witness(at, {name: np.squeeze(value) for name, value in values.items()})
+
+    live = weight.any(axis=1) | ~np.isfinite(weight).all(axis=1)
+    length = np.abs(np.linalg.norm(wi, axis=1) - 1)
+    bad = live & ~((length < 1e-6) & np.isfinite(weight).all(axis=1) & (weight >= 0).all(axis=1))
+    if np.any(bad):
+        row = int(np.argmax(bad))
+        return "a sample is no unit vector, or its weight is negative or not finite", witness(
+            row, weight=weight[row]
+        )
+    lobes = f.delta_lobes(held)
+    for lobe in lobes:  # what went into a delta lobe has no density to compare with
+        live &= np.linalg.norm(wi - lobe.wi, axis=1) > 1e-9
+    if lobes and not np.any(live):
+        total = sum(channels(lobe.weight)[0] for lobe in lobes)
+        mean = weight.mean(axis=0)
+        if np.any(np.abs(mean - total) > WEIGHT + 8 * weight.std(axis=0) / np.sqrt(len(weight))):
+            return "the weights' mean is not that of the delta lobes", witness(0, mean=mean, lobes=total)
+        return None
+    rows = np.flatnonzero(live)
+    density = np.asarray(f.pdf(wi[rows], held[rows]), dtype=float)
+    value = channels(f.evaluate(wi[rows], held[rows]))
+    wrong = ~((density > 0) & np.isfinite(density))
+    if np.any(wrong):
+        row = int(np.argmax(wrong))
+        return "a direction was sampled whose pdf is not positive", witness(int(rows[row]), pdf=density[row])
+    said = value * np.abs(wi[rows, 2])[:, None] / density[:, None]
+    scale = np.maximum(said, weight[rows]) + 1e-300
+    off = (np.abs(said - weight[rows]) / scale).max(axis=1, initial=0.0)
+    # Rounding: a grazing direction or a narrow lobe magnifies it, so a quantile decides, not the worst.
+    allowed = WEIGHT + 64 * f.precision
+    if len(off) and np.quantile(off, 0.99) > allowed:
+        row = int(np.argsort(off)[len(off) // 2])
+        return f"the weight is not f cosθi / pdf: off by {off[row]:.3g}", witness(
+            int(rows[row]), weight=weight[rows[row]], **{"f cosθi / pdf": said[row]}
+        )
+    return None
+
+
+def _distribution(
+    f: BSDF, wi: FloatArray, weight: FloatArray, wo: FloatArray, level: float
+) -> tuple[dict[str, Any], tuple[str, Witness] | None]:
+    """Compare the samples with the pdf, cell by cell, and their mean weight with the albedo."""
+    from radiokit.measure.statistics import chi_square, z_test
+
+    if f.delta_lobes(wo[None, :]):
+        return {}, None
+
+    def density(w: FloatArray) -> FloatArray:
+        return np.asarray(f.pdf(w, np.broadcast_to(wo, w.shape)), dtype=float)
+
+    samples = len(wi)
+    at = {"wo": wo.tolist()}
+    width = f.lobe_width()
+    if width is None:
+        width, _ = slope_width(density, wo)
+    try:
+        total = hemisphere(density, wo=wo, width=width, rtol=1e-7, max_evaluations=400_000)
+    except NonFiniteError as error:
+        return {}, ("the pdf is not finite", Witness(at, {"pdf": str(error)}))
+    row: dict[str, Any] = {"pdf_integral": float(total.value), "evaluations": total.evaluations}
+    if total.value - total.error > 1 + 1e-6:
+        return row, (
+            f"the pdf integrates to {total.value:.6g} over the hemisphere, more than 1",
+            Witness(at, {"∫ pdf dω": float(total.value), "±": float(total.error)}),
+        )
+    expected, spent = _cell_shares(density, wo, width)
+    row["evaluations"] += spent
+    inside = wi[:, 2] > 0
+    observed = np.bincount(_cell_of(wi[inside], wo, width), minlength=len(expected))[: len(expected)]
+    lost = max(0.0, 1 - float(expected.sum()))
+    below = samples - int(observed.sum())
+    if lost < 1e-6 and below == 0:
+        expected = expected / expected.sum()
+        shares, counts = expected, observed
+    else:
+        shares, counts = np.append(expected, lost), np.append(observed, below)
+    shares = np.maximum(shares, 0.0)
+    fit = chi_square(counts, shares / shares.sum() * samples)
+    row["p_chi_square"] = float(fit.p_value)
+    row["chi_square"], row["dof"] = float(fit.statistic), int(fit.dof)
+    if fit.p_value < level:
+        cell = int(np.argmax(np.abs(counts - shares * samples) / np.sqrt(shares * samples + 1)))
+        values = {"p-value": float(fit.p_value), "observed": int(counts[cell])}
+        values["expected"] = float(shares[cell] * samples)
+        return row, (
+            f"the samples do not follow the pdf: chi-square p = {fit.p_value:.1e}",
+            Witness(at, values),
+        )
+    truth = directional_albedo(f, wo, rtol=1e-6, max_evaluations=400_000)
+    row["evaluations"] += truth.evaluations
+    from radiokit.facts.estimate import Estimate
+
+    columns = channels(weight)
+    mean, spread = columns.mean(axis=0), columns.std(axis=0, ddof=1) / np.sqrt(samples)
+    k = int(np.argmax(np.abs(mean - truth.value) / (spread + truth.error + 1e-12)))
+    error = float(spread[k] + np.ravel(truth.error)[k % np.size(truth.error)] + 1e-12)
+    exact = float(np.ravel(truth.value)[k % np.size(truth.value)])
+    p = float(z_test(Estimate(float(mean[k]), error, "statistical"), exact))
+    row["p_albedo"] = p
+    if p < level:
+        values = {"mean weight": float(mean[k]), "∫ f cosθi dωi": exact, "p-value": p}
+        return row, ("the weights' mean is not the albedo", Witness(at, values))
+    return row, None
+
+
+def _cell_shares(density: Any, wo: FloatArray, width: float) -> tuple[FloatArray, int]:
+    """Integrate the pdf over every cell of the slope-space square, on both sides."""
+    x, wx = _panels(CELLS[0])
+    s, ws = _panels(CELLS[1])
+    grid_x, grid_s = np.meshgrid(x, s, indexing="ij")
+    wi, weight, _ = slope_map(wo, width, grid_x.ravel(), grid_s.ravel())
+    weight = weight * np.outer(wx, ws).ravel() / 2
+    sides = []
+    for points in (wi, mirrored(wi, wo)):
+        mass = (density(points) * weight).reshape(CELLS[0], NODES, CELLS[1], NODES)
+        sides.append(mass.sum(axis=(1, 3)).ravel())
+    return np.concatenate(sides), 2 * len(wi)
+
+
+def _panels(count: int) -> tuple[FloatArray, FloatArray]:
+    x, w = gauss_legendre(NODES)
+    return ((np.arange(count)[:, None] + x) / count).ravel(), np.tile(w / count, count)
+
+
+def _cell_of(wi: FloatArray, wo: FloatArray, width: float) -> Any:
+    x, s, far = slope_inverse(wo, width, wi)
+    i = np.minimum((x * CELLS[0]).astype(int), CELLS[0] - 1)
+    j = np.minimum((s * CELLS[1]).astype(int), CELLS[1] - 1)
+    return (far.astype(int) * CELLS[0] + i) * CELLS[1] + j

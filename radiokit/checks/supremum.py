@@ -1,0 +1,242 @@
+"""Supremum: the largest directional albedo over the hemisphere, by a scan of stated step and refinement."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from radiokit.checks.probes import GRAZING, channels, polar
+from radiokit.contracts.albedo import Side, delta_albedo, directional_albedo, integrand
+from radiokit.contracts.bsdf import BSDF, FloatArray
+from radiokit.facts.estimate import Estimate
+from radiokit.measure.quadrature import BLOCK
+from radiokit.measure.slope import slope_rule, slope_width
+
+__all__ = ["STEP", "Extremum", "scan_supremum"]
+
+STEP = np.deg2rad(0.15)
+"""Step of the scan in polar angle [rad]: a gain in any window wider than this is seen."""
+
+AZIMUTHS = 24
+FINE, COARSE, CHEAP = 24, 16, 12
+"""Nodes along each axis of the scan's two rules, and of the only rule when evaluations are dear."""
+
+
+@dataclass(frozen=True)
+class Extremum:
+    """Where the largest albedo was found, and what the scan saw on the way."""
+
+    estimate: Estimate  # of the largest channel
+    direction: FloatArray
+    theta_deg: float
+    phi_deg: float
+    at_grazing: bool  # still rising at the last angle
+    least: Estimate  # the smallest albedo that the scan saw, integrated again
+    theta: FloatArray  # the scan's polar angles [rad]
+    profile: FloatArray  # its largest albedo at each of them
+    step_deg: float
+    evaluations: int
+
+
+def scan_supremum(f: BSDF, *, fixed: Side, turns: bool, budget: int, tolerance: float) -> Extremum:
+    """Find the supremum of the directional albedo for one side.
+
+    Scans polar angles up to 89.99° (all azimuths too, unless ``turns`` says that f is isotropic) with two
+    rules, climbs from the highest few by bounded optimisation, and integrates there with a bound.
+
+    Parameters
+    ----------
+    f : BSDF
+    fixed : {"wo", "wi"}
+    turns : bool
+        Whether f is unchanged by a turn about the normal.
+    budget : int
+        Evaluations that may be spent; a smaller one gives a coarser scan, and says so.
+    tolerance : float
+        The error that the final integral should have.
+    """
+    sides = 1 if f.isotropic else 2
+    per_angle = sides * (FINE**2 + COARSE**2)
+    rich = 0.7 * budget >= per_angle * (GRAZING / STEP + 40)
+    fine, coarse = (FINE, COARSE) if rich else (CHEAP, 0)
+    per_angle = sides * (fine**2 + coarse**2)
+    affordable = int(0.7 * budget / per_angle)
+    count = int(np.clip(affordable, 31, GRAZING / STEP + 1))
+    theta = np.linspace(0.0, GRAZING, count)
+    step = float(theta[1])
+    if rich:
+        theta = np.union1d(theta, np.pi / 2 - np.geomspace(np.pi / 2 - GRAZING, 2 * STEP, 24))
+    phi = np.full(len(theta), 0.3)
+    if not turns:
+        rows = max(9, min(120, affordable // AZIMUTHS))
+        grid_t, grid_p = np.meshgrid(
+            np.linspace(0.0, GRAZING, rows), np.arange(AZIMUTHS) * (2 * np.pi / AZIMUTHS), indexing="ij"
+        )
+        theta, phi = np.concatenate([theta, grid_t.ravel()]), np.concatenate([phi, grid_p.ravel()])
+
+    width, evaluations = _widths(f, theta, phi, fixed)
+    w = polar(np.cos(theta), phi)
+    one = _scan(f, w, width, fine, fixed)
+    two = _scan(f, w, 1.3 * width, coarse, fixed) if coarse else one
+    evaluations += len(theta) * per_angle
+    doubt = np.abs(one - two)
+    order = np.argsort(-(one + doubt), kind="stable")
+    tops = _separate(np.append([0, int(np.argmax(theta))], order), theta, phi, step)
+
+    best: Estimate | None = None
+    place = w[0]
+    left = max(budget - evaluations, 40_000)
+    for index in tops:
+        direction, spent = _refined(f, theta, phi, width, index, step, fixed, turns, left // (8 * len(tops)))
+        evaluations += spent
+        for candidate in (direction, w[index]):
+            found = _worst_channel(
+                directional_albedo(
+                    f,
+                    candidate,
+                    fixed=fixed,
+                    rtol=0.0,
+                    atol=tolerance,
+                    max_evaluations=left // (2 * len(tops)),
+                )
+            )
+            evaluations += found.evaluations
+            if best is None or found.value - found.error > best.value:  # a tie keeps the first
+                best, place = found, candidate
+            if np.array_equal(direction, w[index]):
+                break
+    assert best is not None
+    least = directional_albedo(f, w[np.argmin(one)], fixed=fixed, rtol=1e-6, max_evaluations=left // 4)
+    evaluations += least.evaluations
+    angle = float(np.arctan2(np.hypot(place[0], place[1]), place[2]))
+    last = float(theta.max())
+    return Extremum(
+        estimate=best,
+        direction=place,
+        theta_deg=float(np.rad2deg(angle)),
+        phi_deg=float(np.rad2deg(np.arctan2(place[1], place[0]))),
+        at_grazing=bool(angle >= last - 1e-9 and _rises(theta, one)),
+        least=_worst_channel(least, -1),
+        theta=theta,
+        profile=one,
+        step_deg=float(np.rad2deg(step)),
+        evaluations=evaluations,
+    )
+
+
+def _rises(theta: FloatArray, profile: FloatArray) -> bool:
+    order = np.argsort(theta)
+    return bool(profile[order[-1]] > profile[order[-2]])
+
+
+def _widths(f: BSDF, theta: FloatArray, phi: FloatArray, fixed: Side) -> tuple[FloatArray, int]:
+    """Return the lobe's width at every angle: the model's own, or found at nine and interpolated."""
+    known = f.lobe_width()
+    if known is not None:
+        return np.full(len(theta), known), 0
+    knots = np.append(np.linspace(0.0, np.deg2rad(85), 7), np.deg2rad([89.0, 89.9]))
+    found = [slope_width(integrand(f, w, fixed), w) for w in polar(np.cos(knots), np.full(9, phi[0]))]
+    widths = np.log([width for width, _ in found])
+    return np.exp(np.interp(theta, knots, widths)), sum(spent for _, spent in found)
+
+
+def _scan(f: BSDF, w: FloatArray, width: FloatArray, n: int, fixed: Side) -> FloatArray:
+    """Integrate at every direction of ``w`` (M, 3) with one rule; the largest channel of each."""
+    parts = [_integrals(f, w[block], width[block], n, fixed) for block in _blocks(len(w), 2 * n * n)]
+    return np.concatenate(parts)
+
+
+def _blocks(count: int, cost: int) -> Iterator[slice]:
+    size = max(1, BLOCK // cost)
+    for start in range(0, count, size):
+        yield slice(start, start + size)
+
+
+def _integrals(f: BSDF, w: FloatArray, width: FloatArray, n: int, fixed: Side) -> FloatArray:
+    other, weight = slope_rule(w, width, n, symmetric=f.isotropic)
+    flat = other.reshape(-1, 3)
+    held = np.repeat(w, other.shape[1], axis=0)
+    value = f.evaluate(flat, held) if fixed == "wo" else f.evaluate(held, flat)
+    terms = channels(value) * (flat[:, 2] * weight.ravel())[:, None]
+    sums = terms.reshape(len(w), -1, terms.shape[1]).sum(axis=1)
+    sums = sums + np.array([np.ravel(delta_albedo(f, v)) for v in w])
+    result: FloatArray = sums.max(axis=1)
+    return result
+
+
+def _separate(order: FloatArray, theta: FloatArray, phi: FloatArray, step: float, most: int = 6) -> list[int]:
+    """Pick the highest few that are no neighbours of one another."""
+    picked: list[int] = []
+    for index in order:
+        apart = [
+            abs(theta[index] - theta[old]) > 3 * step or abs(phi[index] - phi[old]) > np.pi / AZIMUTHS
+            for old in picked
+        ]
+        if all(apart):
+            picked.append(int(index))
+        if len(picked) == most:
+            break
+    return picked
+
+
+def _refined(
+    f: BSDF,
+    theta: FloatArray,
+    phi: FloatArray,
+    width: FloatArray,
+    index: int,
+    step: float,
+    fixed: Side,
+    turns: bool,
+    budget: int,
+) -> tuple[FloatArray, int]:
+    """Climb from a scanned angle to the highest albedo between its neighbours."""
+    from scipy.optimize import minimize, minimize_scalar
+
+    n = 32 if budget > 60_000 else CHEAP
+    cost = n * n * (1 if f.isotropic else 2)
+    evaluations = int(np.clip(budget // cost, 5, 25))
+    low, high = max(0.0, theta[index] - step), min(GRAZING, theta[index] + step)
+    spent = 0
+
+    def negative(t: float, p: float) -> float:
+        nonlocal spent
+        spent += cost
+        w = polar(np.cos([t]), [p])
+        return -float(_scan(f, w, width[index : index + 1], n, fixed)[0])
+
+    if turns:
+        found = minimize_scalar(
+            negative,
+            bounds=(low, high),
+            args=(phi[index],),
+            method="bounded",
+            options={"maxiter": evaluations, "xatol": 1e-7},
+        )
+        best = found.x, phi[index], found.fun
+    else:
+        wide = 2 * np.pi / AZIMUTHS
+        result: Any = minimize(
+            lambda x: negative(x[0], x[1]),
+            [theta[index], phi[index]],
+            bounds=[(low, high), (phi[index] - wide, phi[index] + wide)],
+            method="Nelder-Mead",
+            options={"maxfev": 3 * evaluations, "xatol": 1e-6},
+        )
+        best = result.x[0], result.x[1], result.fun
+    start = polar(np.cos(theta[index : index + 1]), phi[index : index + 1])[0]
+    if -best[2] <= -negative(theta[index], phi[index]):
+        return start, spent
+    return polar(np.cos([best[0]]), [best[1]])[0], spent
+
+
+def _worst_channel(estimate: Estimate, sign: int = 1) -> Estimate:
+    """Return the channel that reaches highest, or lowest for a negative sign."""
+    if np.ndim(estimate.value) == 0:
+        return estimate
+    value, error = np.asarray(estimate.value), np.broadcast_to(estimate.error, np.shape(estimate.value))
+    k = int(np.argmax(sign * value - error))
+    return replace(estimate, value=float(value[k]), error=float(error[k]))

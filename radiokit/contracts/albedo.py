@@ -1,0 +1,160 @@
+"""Directional albedo: the share of the flux that a BSDF scatters, for one direction or many."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from radiokit.contracts.blackbox import as_bsdf
+from radiokit.contracts.bsdf import BSDF, FloatArray
+from radiokit.facts.directions import check_directions
+from radiokit.facts.errors import ParameterError
+from radiokit.facts.estimate import Estimate
+from radiokit.measure.montecarlo import mean
+from radiokit.measure.quadrature import hemisphere
+
+__all__ = ["Side", "albedo", "delta_albedo", "directional_albedo", "integrand"]
+
+Side = Literal["wo", "wi"]
+"""Which direction is held fixed."""
+
+
+def albedo(
+    f: BSDF | Callable[..., Any],
+    wo: npt.ArrayLike,
+    *,
+    method: Literal["quadrature", "mc"] = "quadrature",
+    rtol: float = 1e-8,
+    samples: int = 1 << 20,
+    rng: int | np.random.Generator | None = None,
+    fixed: Side = "wo",
+) -> Estimate:
+    """Return the directional albedo ρ(wo) = ∫ f(wi, wo) cosθi dωi, delta lobes included.
+
+    Parameters
+    ----------
+    f : BSDF or callable
+    wo : array_like, shape (3,) or (N, 3)
+        Unit vectors above the horizon.
+    method : {"quadrature", "mc"}
+        Quadrature gives a bound; Monte Carlo samples the BSDF and gives a standard error.
+    rtol : float
+        Relative error asked of the quadrature.
+    samples, rng
+        For Monte Carlo: the number of samples for each direction, and the seed.
+    fixed : {"wo", "wi"}
+        Hold ``wi`` fixed instead and integrate over wo: what a ray of light from there loses.
+
+    Returns
+    -------
+    Estimate
+        Of shape () or (N,), with (..., K) for K wavelengths. Dimensionless; in [0, 1] for a BSDF that
+        conserves energy.
+
+    Raises
+    ------
+    ParameterError
+        When ``wo`` is not a unit vector above the horizon, or ``method`` is unknown.
+    CallableError, NonFiniteError
+        When the function fails at some direction.
+
+    Notes
+    -----
+    Nicodemus et al. (1977), NBS Monograph 160, eq. (16): the directional-hemispherical reflectance.
+
+    >>> from radiokit.contracts.bsdf import bsdf
+    >>> print(albedo(bsdf("lambert", reflectance=0.5), (0.0, 0.0, 1.0)).value.round(12))
+    0.5
+    """
+    model = as_bsdf(f)
+    wo = check_directions("wo", wo)
+    if wo.ndim > 2:
+        raise ParameterError("wo", wo.shape, "of shape (3,) or (N, 3)")
+    if not np.all(wo[..., 2] > 0):
+        raise ParameterError("wo", wo.tolist(), "above the horizon (z > 0)")
+    if fixed not in ("wo", "wi"):
+        raise ParameterError("fixed", fixed, "'wo' or 'wi'")
+    if method == "quadrature":
+        one = lambda w: directional_albedo(model, w, fixed=fixed, rtol=rtol)  # noqa: E731
+    elif method == "mc":
+        if fixed == "wi":
+            raise ParameterError("method", method, "'quadrature' when wi is held fixed")
+        seed = int(np.random.default_rng(rng).integers(1 << 63))
+        one = lambda w: _monte_carlo(model, w, samples, seed)  # noqa: E731
+    else:
+        raise ParameterError("method", method, "'quadrature' or 'mc'")
+    if wo.ndim == 1:
+        return one(wo)
+    start = time.perf_counter()
+    found = [one(w) for w in wo]
+    notes = list(dict.fromkeys(estimate.note for estimate in found if estimate.note))
+    return Estimate(
+        np.array([estimate.value for estimate in found]),
+        np.array([estimate.error for estimate in found]),
+        found[0].kind if found else "rounding",
+        sum(estimate.evaluations for estimate in found),
+        time.perf_counter() - start,
+        found[0].method if found else method,
+        all(estimate.converged for estimate in found),
+        "; ".join(notes),
+    )
+
+
+def directional_albedo(
+    model: BSDF,
+    fixed_direction: FloatArray,
+    *,
+    fixed: Side = "wo",
+    rtol: float = 1e-8,
+    atol: float = 0.0,
+    max_evaluations: int = 4_000_000,
+) -> Estimate:
+    """Return the directional albedo by quadrature, with a truncation bound.
+
+    >>> from radiokit.contracts.bsdf import bsdf
+    >>> estimate = directional_albedo(bsdf("lambert", reflectance=0.5), np.array([0.0, 0.6, 0.8]))
+    >>> bool(abs(estimate.value - 0.5) <= estimate.error < 5e-9)
+    True
+    """
+    found = hemisphere(
+        integrand(model, fixed_direction, fixed),
+        wo=fixed_direction,
+        width=model.lobe_width(),
+        rtol=rtol,
+        atol=atol,
+        symmetric=model.isotropic,
+        max_evaluations=max_evaluations,
+    )
+    delta = delta_albedo(model, fixed_direction)
+    if not np.any(delta):
+        return replace(found, error=found.error + 4 * model.precision * np.abs(found.value))
+    total = found.value + delta
+    return replace(found, value=total, error=found.error + 4 * model.precision * np.abs(total))
+
+
+def integrand(model: BSDF, fixed_direction: FloatArray, fixed: Side) -> Callable[[FloatArray], Any]:
+    """Return w ↦ f cosθ(w) with the other direction held fixed."""
+
+    def value(w: FloatArray) -> Any:
+        other = np.broadcast_to(fixed_direction, w.shape)
+        f = model.evaluate(w, other) if fixed == "wo" else model.evaluate(other, w)
+        return (f.T * w[:, 2]).T
+
+    return value
+
+
+def delta_albedo(model: BSDF, wo: FloatArray) -> Any:
+    """Return the share of the flux that leaves in delta lobes; 0.0 when there are none."""
+    return sum((lobe.weight[0] for lobe in model.delta_lobes(wo[None, :])), start=np.float64(0.0))
+
+
+def _monte_carlo(model: BSDF, wo: FloatArray, samples: int, seed: int) -> Estimate:
+    def draw(generator: np.random.Generator, n: int) -> Any:
+        return model.sample(generator.random((n, 2)), np.broadcast_to(wo, (n, 3)))[1]
+
+    return mean(draw, samples=samples, rng=seed, method="Monte Carlo, BSDF-sampled")
