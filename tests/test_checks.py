@@ -1,4 +1,4 @@
-"""The judges before planted wrong models, which they must reject, and hard legal ones, which they must accept."""
+"""The judges reject planted wrong models, and accept hard legal ones."""
 
 from __future__ import annotations
 
@@ -267,6 +267,13 @@ def test_energy_does_not_give_a_number_for_an_integral_that_diverges():
     verdict = energy(as_bsdf(f), budget=2_000_000)
     assert verdict.outcome is not Outcome.HOLDS
     assert verdict.estimate is None or verdict.estimate.error > 1e-4 * verdict.estimate.value
+
+
+@pytest.mark.parametrize(("gain", "outcome"), [(1.0, Outcome.HOLDS), (1.02, Outcome.VIOLATED)])
+def test_energy_resolves_a_narrow_lobe_that_is_retro_reflective(gain, outcome):
+    verdict = energy(as_bsdf(lambda wi, wo: gain * ggx(0.005)(wi, wo * [-1, -1, 1])))
+    assert verdict.outcome is outcome
+    assert verdict.estimate.value == pytest.approx(gain, rel=1e-3)
 
 
 @pytest.mark.parametrize("alpha", [1e-3, 0.003, 0.1, 1.0])

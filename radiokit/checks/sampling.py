@@ -13,7 +13,7 @@ from radiokit.contracts.bsdf import BSDF, FloatArray
 from radiokit.facts.errors import NonFiniteError
 from radiokit.facts.verdict import Evidence, Outcome, Verdict, Witness
 from radiokit.measure.quadrature import hemisphere
-from radiokit.measure.slope import gauss_legendre, mirrored, slope_inverse, slope_map, slope_width
+from radiokit.measure.slope import find_lobe, gauss_legendre, mirrored, slope_inverse, slope_map
 
 __all__ = ["ANGLES_DEG", "LEVEL", "sampling"]
 
@@ -148,7 +148,7 @@ def _distribution(
     at = {"wo": wo.tolist()}
     width = f.lobe_width()
     if width is None:
-        width, _ = slope_width(density, wo)
+        width = find_lobe(density, wo).width
     try:
         total = hemisphere(density, wo=wo, width=width, rtol=1e-7, max_evaluations=400_000)
     except NonFiniteError as error:

@@ -13,7 +13,7 @@ from radiokit.contracts.albedo import Side, delta_albedo, directional_albedo, in
 from radiokit.contracts.bsdf import BSDF, FloatArray
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.quadrature import BLOCK
-from radiokit.measure.slope import slope_rule, slope_width
+from radiokit.measure.slope import find_lobe, slope_rule, turned
 
 __all__ = ["STEP", "Extremum", "scan_supremum"]
 
@@ -77,10 +77,10 @@ def scan_supremum(f: BSDF, *, fixed: Side, turns: bool, budget: int, tolerance: 
         )
         theta, phi = np.concatenate([theta, grid_t.ravel()]), np.concatenate([phi, grid_p.ravel()])
 
-    width, evaluations = _widths(f, theta, phi, fixed)
+    aim, evaluations = _aim(f, theta, phi, fixed)
     w = polar(np.cos(theta), phi)
-    one = _scan(f, w, width, fine, fixed)
-    two = _scan(f, w, 1.3 * width, coarse, fixed) if coarse else one
+    one = _scan(f, w, aim, 1.0, fine, fixed)
+    two = _scan(f, w, aim, 1.3, coarse, fixed) if coarse else one
     evaluations += len(theta) * per_angle
     doubt = np.abs(one - two)
     order = np.argsort(-(one + doubt), kind="stable")
@@ -90,7 +90,7 @@ def scan_supremum(f: BSDF, *, fixed: Side, turns: bool, budget: int, tolerance: 
     place = w[0]
     left = max(budget - evaluations, 40_000)
     for index in tops:
-        direction, spent = _refined(f, theta, phi, width, index, step, fixed, turns, left // (8 * len(tops)))
+        direction, spent = _refined(f, theta, phi, aim, index, step, fixed, turns, left // (8 * len(tops)))
         evaluations += spent
         for candidate in (direction, w[index]):
             found = _worst_channel(
@@ -132,20 +132,32 @@ def _rises(theta: FloatArray, profile: FloatArray) -> bool:
     return bool(profile[order[-1]] > profile[order[-2]])
 
 
-def _widths(f: BSDF, theta: FloatArray, phi: FloatArray, fixed: Side) -> tuple[FloatArray, int]:
-    """Return the lobe's width at every angle: the model's own, or found at nine and interpolated."""
+@dataclass(frozen=True)
+class _Aim:
+    """The lobe's width, and whether it is a retro-reflective one, at each scanned direction."""
+
+    width: FloatArray
+    retro: FloatArray
+
+    def __getitem__(self, index: slice) -> _Aim:
+        return _Aim(self.width[index], self.retro[index])
+
+
+def _aim(f: BSDF, theta: FloatArray, phi: FloatArray, fixed: Side) -> tuple[_Aim, int]:
+    """Return where to aim at every angle: by the model's own word, or found at nine and interpolated."""
     known = f.lobe_width()
     if known is not None:
-        return np.full(len(theta), known), 0
+        return _Aim(np.full(len(theta), known), np.zeros(len(theta), dtype=bool)), 0
     knots = np.append(np.linspace(0.0, np.deg2rad(85), 7), np.deg2rad([89.0, 89.9]))
-    found = [slope_width(integrand(f, w, fixed), w) for w in polar(np.cos(knots), np.full(9, phi[0]))]
-    widths = np.log([width for width, _ in found])
-    return np.exp(np.interp(theta, knots, widths)), sum(spent for _, spent in found)
+    found = [find_lobe(integrand(f, w, fixed), w) for w in polar(np.cos(knots), np.full(9, phi[0]))]
+    width = np.exp(np.interp(theta, knots, np.log([lobe.width for lobe in found])))
+    retro = np.interp(theta, knots, [float(lobe.retro) for lobe in found]) > 0.5
+    return _Aim(width, retro), sum(lobe.evaluations for lobe in found)
 
 
-def _scan(f: BSDF, w: FloatArray, width: FloatArray, n: int, fixed: Side) -> FloatArray:
+def _scan(f: BSDF, w: FloatArray, aim: _Aim, scale: float, n: int, fixed: Side) -> FloatArray:
     """Integrate at every direction of ``w`` (M, 3) with one rule; the largest channel of each."""
-    parts = [_integrals(f, w[block], width[block], n, fixed) for block in _blocks(len(w), 2 * n * n)]
+    parts = [_integrals(f, w[block], aim[block], scale, n, fixed) for block in _blocks(len(w), 2 * n * n)]
     return np.concatenate(parts)
 
 
@@ -155,8 +167,9 @@ def _blocks(count: int, cost: int) -> Iterator[slice]:
         yield slice(start, start + size)
 
 
-def _integrals(f: BSDF, w: FloatArray, width: FloatArray, n: int, fixed: Side) -> FloatArray:
-    other, weight = slope_rule(w, width, n, symmetric=f.isotropic)
+def _integrals(f: BSDF, w: FloatArray, aim: _Aim, scale: float, n: int, fixed: Side) -> FloatArray:
+    other, weight = slope_rule(w, scale * aim.width, n, symmetric=f.isotropic)
+    other[aim.retro] = turned(other[aim.retro])
     flat = other.reshape(-1, 3)
     held = np.repeat(w, other.shape[1], axis=0)
     value = f.evaluate(flat, held) if fixed == "wo" else f.evaluate(held, flat)
@@ -186,7 +199,7 @@ def _refined(
     f: BSDF,
     theta: FloatArray,
     phi: FloatArray,
-    width: FloatArray,
+    aim: _Aim,
     index: int,
     step: float,
     fixed: Side,
@@ -206,7 +219,7 @@ def _refined(
         nonlocal spent
         spent += cost
         w = polar(np.cos([t]), [p])
-        return -float(_scan(f, w, width[index : index + 1], n, fixed)[0])
+        return -float(_scan(f, w, aim[index : index + 1], 1.0, n, fixed)[0])
 
     if turns:
         found = minimize_scalar(

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from radiokit.facts.directions import angle_between
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.quadrature import box, hemisphere
-from radiokit.measure.slope import slope_width
+from radiokit.measure.slope import find_lobe
 
 __all__ = ["lune"]
 
@@ -68,7 +68,8 @@ def lune(
         return Estimate(nothing, nothing, "truncation", 1, method="lune")
     spent = 0
     if width is None:
-        width, spent = slope_width(integrand, wo)
+        lobe = find_lobe(integrand, wo)
+        width, spent = lobe.width, lobe.evaluations
     opening = float(angle_between(_UP, -zenith))
     across = np.array([zenith[0], zenith[1], 0.0]) / sine
     axis = np.array([-across[1], across[0], 0.0])

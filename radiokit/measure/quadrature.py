@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from radiokit.facts.errors import NonFiniteError, ParameterError
 from radiokit.facts.estimate import Estimate
-from radiokit.measure.slope import gauss_legendre, mirrored, slope_map, slope_rule, slope_width
+from radiokit.measure.slope import find_lobe, gauss_legendre, mirrored, slope_map, slope_rule, turned
 
 __all__ = ["BLOCK", "box", "converge", "hemisphere"]
 
@@ -143,7 +143,11 @@ def hemisphere(
     wo = np.asarray(wo, dtype=float)
     spent = 0
     if width is None:
-        width, spent = slope_width(integrand, wo)
+        lobe = find_lobe(integrand, wo)
+        width, spent = lobe.width, lobe.evaluations
+        if lobe.retro:
+            original = integrand
+            integrand = lambda w: original(turned(w))  # noqa: E731
     sides = 1 if symmetric else 2
     sizes = [n for n in SIZES if sides * n * n <= max_evaluations]
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -11,12 +12,23 @@ import numpy.typing as npt
 
 from radiokit.facts.errors import ParameterError
 
-__all__ = ["gauss_legendre", "mirrored", "slope_inverse", "slope_map", "slope_rule", "slope_width"]
+__all__ = [
+    "Lobe",
+    "find_lobe",
+    "gauss_legendre",
+    "mirrored",
+    "slope_inverse",
+    "slope_map",
+    "slope_rule",
+    "turned",
+]
 
 FloatArray = npt.NDArray[np.float64]
 
 PROBE = (48, 16)
 PROBE_WIDTH = 1e-5
+RETRO = 0.1
+"""How much more mass must be seen around ``wo`` than around its mirror direction to aim there."""
 
 
 @lru_cache(maxsize=64)
@@ -179,28 +191,50 @@ def _grid(
     return wi.reshape(*size, 3), weight.reshape(size), np.broadcast_to(rho, weight.shape).reshape(size)
 
 
-def slope_width(integrand: Callable[[FloatArray], Any], wo: npt.ArrayLike) -> tuple[float, int]:
-    """Find the width at which ``slope_rule`` resolves an unknown integrand, and the evaluations spent.
+@dataclass(frozen=True)
+class Lobe:
+    """Where an unknown integrand has its mass: the width in slope, and whether around ``wo`` itself.
+
+    ``retro`` says that the lobe lies around ``wo`` and not around its mirror direction; turning every
+    direction by half a turn about the normal exchanges the two.
+    """
+
+    width: float
+    retro: bool
+    evaluations: int
+
+
+def find_lobe(integrand: Callable[[FloatArray], Any], wo: npt.ArrayLike) -> Lobe:
+    """Find the lobe at which ``slope_rule`` should aim for an unknown integrand.
 
     The width is the median slope of the half vector under the integrand's own mass, seen by a rule whose
-    radii are spread evenly over five decades. It is α for GGX, and about 0.5 for a diffuse lobe.
+    radii are spread evenly over five decades. It is α for GGX, and about 0.5 for a diffuse lobe. The rule
+    looks around the mirror direction and around ``wo`` itself, and the larger mass decides.
 
-    >>> width, _ = slope_width(lambda wi: wi[:, 2], (0.0, 0.0, 1.0))
-    >>> 0.3 < width < 0.6
-    True
+    >>> lobe = find_lobe(lambda wi: wi[:, 2], (0.0, 0.0, 1.0))
+    >>> 0.3 < lobe.width < 0.6, lobe.retro
+    (True, False)
     """
     wo = np.asarray(wo, dtype=float)
     wi, weight, rho = _grid(wo, np.asarray(PROBE_WIDTH), PROBE)
-    other = mirrored(wi, wo[None, :])
-    value = np.asarray(integrand(np.concatenate([wi, other])), dtype=float)
-    value = np.abs(value.reshape(len(value), -1)).sum(axis=1)
-    mass = weight * (value[: len(wi)] + value[len(wi) :])
-    if not np.all(np.isfinite(mass)) or mass.sum() == 0:
-        return 1.0, len(value)
+    both = np.concatenate([wi, mirrored(wi, wo[None, :])])
     order = np.argsort(rho)
-    share = np.cumsum(mass[order]) / mass.sum()
-    median = rho[order][np.searchsorted(share, 0.5)]
-    return float(np.clip(median, 10 * PROBE_WIDTH, 1.0)), len(value)
+    best, best_mass, evaluations = Lobe(1.0, False, 0), 0.0, 0
+    for retro in (False, True):
+        value = np.asarray(integrand(turned(both) if retro else both), dtype=float)
+        value = np.abs(value.reshape(len(value), -1)).sum(axis=1)
+        evaluations += len(value)
+        mass = weight * (value[: len(wi)] + value[len(wi) :])
+        total = mass.sum()
+        if np.isfinite(total) and total > (1 + RETRO * retro) * best_mass:
+            median = rho[order][np.searchsorted(np.cumsum(mass[order]), total / 2)]
+            best, best_mass = Lobe(float(np.clip(median, 10 * PROBE_WIDTH, 1.0)), retro, 0), total
+    return replace(best, evaluations=evaluations)
+
+
+def turned(w: FloatArray) -> FloatArray:
+    """Return directions turned by half a turn about the normal."""
+    return w * np.array([-1.0, -1.0, 1.0])
 
 
 def slope_inverse(wo: FloatArray, width: float, wi: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
