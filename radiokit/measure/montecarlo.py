@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.facts.errors import CallableError, ParameterError
+from radiokit.facts.errors import CallableError, NonFiniteError, ParameterError
 from radiokit.facts.estimate import Estimate
 
 __all__ = ["Draw", "Moments", "block_generator", "mean", "seed_from"]
@@ -36,7 +36,8 @@ class Moments:
     the mean, as the sum of squares does not. All but ``count`` are scalars or have shape ``(K,)``.
 
     Source: Chan, Golub, LeVeque (1983), Algorithms for computing the sample variance, The American
-    Statistician 37(3), the corrected two-pass algorithm and the pairwise update; doi:10.1080/00031305.1983.10483115.
+    Statistician 37(3), doi:10.1080/00031305.1983.10483115: the corrected two-pass algorithm within a batch,
+    the pairwise update between batches.
 
     >>> moments = Moments.of([1e9, 1e9 + 2]).merge(Moments.of([1e9 + 1]))
     >>> float(moments.mean - 1e9), float(moments.variance)
@@ -170,7 +171,9 @@ def mean(
     ParameterError
         When an argument is out of its range.
     CallableError
-        When ``draw`` returns another shape than it should, or a value that is not finite.
+        When ``draw`` returns another shape than it should.
+    NonFiniteError
+        When a sample is NaN or infinite, naming it and its block.
 
     >>> estimate = mean(lambda generator, n: generator.random(n), samples=100_000, rng=1)
     >>> estimate.covers(0.5, level=0.9999), estimate.evaluations
@@ -234,12 +237,18 @@ def _block(draw: Draw, seed: int, block: int, samples: int, index: int) -> Momen
     finite = np.isfinite(values)
     if not finite.all():
         where = tuple(int(i) for i in np.argwhere(~finite)[0])
-        raise _bad_draw(draw, f"returned {float(values[where])} as sample {where[0]} of block {index}")
+        value = float(values[where])
+        problem = f"{_name(draw)} returned {value} as sample {where[0]} of block {index}"
+        raise NonFiniteError(problem, value=value, sample=where[0], block=index)
     return Moments.of(values)
 
 
 def _bad_draw(draw: Draw, problem: str) -> CallableError:
-    return CallableError(getattr(draw, "__qualname__", type(draw).__qualname__), problem)
+    return CallableError(_name(draw), problem)
+
+
+def _name(draw: Draw) -> str:
+    return str(getattr(draw, "__qualname__", type(draw).__qualname__))
 
 
 def _error(total: Moments, blocks: int) -> Any:
