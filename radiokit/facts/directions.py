@@ -266,7 +266,7 @@ def half_vector(wi: FloatArray, wo: FloatArray) -> FloatArray:
     >>> half_vector(np.array([0.6, 0.0, 0.8]), np.array([-0.6, 0.0, 0.8]))
     array([0., 0., 1.])
     """
-    total = np.add(wi, wo)  # cancels only where it is exact
+    total = np.add(wi, wo, dtype=np.float64)  # cancels only where it is exact
     opposite = (total == 0.0).all(axis=-1, keepdims=True)
     if opposite.any():
         total = np.where(opposite, frame(wo)[..., 0, :], total)
@@ -282,6 +282,7 @@ def reflect(w: FloatArray, normal: FloatArray | None = None) -> FloatArray:
     w = np.asarray(w, dtype=np.float64)
     if normal is None:
         return np.multiply(w, (-1.0, -1.0, 1.0))
+    normal = np.asarray(normal, dtype=np.float64)
     result: FloatArray = 2.0 * dot(w, normal)[..., None] * normal - w
     return result
 
@@ -358,8 +359,8 @@ def angle_between(a: FloatArray, b: FloatArray) -> Any:
     >>> float(angle_between(np.array([0.0, 0.0, 1.0]), np.array([1e-16, 0.0, 1.0])))
     1e-16
     """
-    sine = 0.5 * _length(_cross(np.subtract(a, b), np.add(a, b)))
-    return np.arctan2(sine, dot(a, b))
+    a, b = np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)
+    return np.arctan2(0.5 * _length(_cross(a - b, a + b)), dot(a, b))
 
 
 def cap_solid_angle(half_angle: npt.ArrayLike) -> Any:
