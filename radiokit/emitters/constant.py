@@ -15,10 +15,13 @@ from radiokit.contracts.vectors import vector
 from radiokit.facts.directions import frame, to_world
 from radiokit.facts.estimate import Estimate, rounding
 from radiokit.facts.source import Source
+from radiokit.measure.warps import UniformHemisphere, UniformSphere
 
 __all__ = ["Constant"]
 
 FloatArray = npt.NDArray[np.float64]
+
+_SPHERE, _HEMISPHERE = UniformSphere(), UniformHemisphere()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,22 +72,11 @@ class Constant(Emitter):
         return np.where(direction @ np.array(self.normal) > 0, self.radiance, 0.0)
 
     def sample(self, u: FloatArray, position: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Turn uniform points (N, 2) into directions (N, 3), uniform over the sky, and their density [sr⁻¹].
-
-        Archimedes' map: the height and the azimuth of a uniform direction are uniform.
-        """
-        phi = 2 * math.pi * u[:, 1]
+        """Turn uniform points (N, 2) into directions (N, 3), uniform over the sky, and densities [sr⁻¹]."""
+        density = np.full(len(u), self._density)
         if self.normal is None:
-            height = 1 - 2 * u[:, 0]
-            squared = 4 * u[:, 0] * (1 - u[:, 0])
-        else:
-            height = 1 - u[:, 0]
-            squared = u[:, 0] * (2 - u[:, 0])
-        sine = np.sqrt(squared)
-        wi = np.stack([sine * np.cos(phi), sine * np.sin(phi), height], axis=-1)
-        if self.normal is not None:
-            wi = to_world(frame(self.normal), wi)
-        return wi, np.full(len(u), self._density)
+            return _SPHERE.sample(u), density
+        return to_world(frame(self.normal), _HEMISPHERE.sample(u)), density
 
     def pdf(self, direction: FloatArray, position: FloatArray) -> FloatArray:
         """Return 1/4π, or 1/2π in the half-space of a sky and 0 outside [sr⁻¹]."""

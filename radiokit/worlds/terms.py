@@ -47,7 +47,7 @@ _EPS = float(np.finfo(float).eps)
 _GUARD = 4096  # lattice points that must confirm a quadrature over the light's own square
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Term:
     """The light of one emitter that one material sends towards ``wo`` (3,), in the receiver's frame.
 
