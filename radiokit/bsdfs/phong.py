@@ -34,7 +34,7 @@ class Phong(BSDF):
     Parameters
     ----------
     exponent : float
-        n [1], in [0, 1e6]. The lobe's half-width at half its height is about √(1.39/n) rad.
+        n [1], in [1, 1e6]. The lobe's half-width at half its height is about √(1.39/n) rad.
     reflectance : float
         ρ, the albedo at normal incidence [1], in [0, 1].
 
@@ -47,7 +47,7 @@ class Phong(BSDF):
     name = "phong"
     SOURCE = SOURCE
 
-    exponent: float = parameter("[0, 1e6]", "1", "exponent of the lobe's cosine", default=10.0)
+    exponent: float = parameter("[1, 1e6]", "1", "exponent of the lobe's cosine", default=10.0)
     reflectance: float = parameter("[0, 1]", "1", "albedo at normal incidence", default=1.0)
 
     def symbolic(self) -> Twin:
