@@ -110,9 +110,9 @@ def test_a_scheduler_without_dask_names_the_extra(monkeypatch: pytest.MonkeyPatc
 def test_a_scheduler_that_does_not_answer_is_named(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed", reason="needs radiokit[cluster]")
     monkeypatch.setattr(workers_module, "CONNECT_TIMEOUT", 0.5)
-    with pytest.raises(RadiokitError, match=f"no Dask scheduler answers at '{address}'"):
-        with open_executor(scheduler=address):
-            pass
+    message = f"no Dask scheduler answers at '{address}'"
+    with pytest.raises(RadiokitError, match=message), open_executor(scheduler=address):
+        pass
 
 
 def test_available_workers_is_what_this_process_may_use() -> None:

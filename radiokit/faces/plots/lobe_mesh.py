@@ -23,7 +23,10 @@ Scale = Literal["linear", "log"]
 _LOWEST_POLE = 1e-3
 _EDGE = 1.0 - 1e-9
 _SCAN = 160
-_UNIFORM_SHARE = 0.6
+_STRETCH = 9.0
+# What a unit of angle and all of its orders of magnitude weigh against the length of the curve: the feet of
+# a narrow lobe are too flat to have a length, and still hold some of its integral.
+_UNIFORM_SHARE, _LOGARITHMIC_SHARE = 0.6, 0.6
 
 
 def lobe_mesh(
@@ -173,7 +176,7 @@ def _spacing(
     t, b, pole = around
     horizon = _EDGE * np.arctan2(pole[2], -(np.cos(psi) * t[2] + np.sin(psi) * b[2]))
     x = np.linspace(0.0, 1.0, _SCAN)
-    fine = np.union1d(np.sinh(9 * x) / np.sinh(9.0), x)
+    fine = np.union1d(np.sinh(_STRETCH * x) / np.sinh(_STRETCH), x)
     delta = horizon[:, None] * fine
     wi = _rays(around, psi, delta)
     values = value(wi.reshape(-1, 3)).reshape(delta.shape)
@@ -184,6 +187,7 @@ def _spacing(
         radius = radius / peak
     steps = np.linalg.norm(np.diff(radius[..., None] * wi, axis=1), axis=-1)
     steps += _UNIFORM_SHARE * horizon[:, None] / np.pi * np.diff(fine)
+    steps += _LOGARITHMIC_SHARE * np.diff(np.arcsinh(fine * np.sinh(_STRETCH)) / _STRETCH)
     length = np.concatenate([np.zeros((len(psi), 1)), np.cumsum(steps, axis=1)], axis=1)
     length /= length[:, -1:]
     even = np.linspace(0.0, 1.0, count)

@@ -26,11 +26,16 @@ _COLOURS = "viridis"
 _FONT_FILE = 4  # VTK_FONT_FILE
 
 
+_Side = Literal["left", "center", "right"]
+_Level = Literal["top", "center", "bottom"]
+
+
 class _Label(NamedTuple):
     place: FloatArray
     text: str
     colour: str
-    side: Literal["left", "center", "right"] = "center"
+    side: _Side = "center"
+    level: _Level = "center"
 
 
 def lobe_scene(
@@ -58,7 +63,7 @@ def lobe_scene(
     finite = np.isfinite(values)
     best = int(np.argmax(np.where(finite, values, -np.inf)))
     peak = float(values[best])
-    unit = size[1] / 900
+    unit = min(size[0] / 1200, size[1] / 900)
 
     plotter = pv.Plotter(off_screen=True, window_size=list(size), theme=pv.themes.DocumentTheme())
     plotter.enable_anti_aliasing("ssaa")
@@ -83,7 +88,10 @@ def lobe_scene(
         if weight > 0:
             below = below or bool(lobe.wi[0, 2] < 0)
             _add_arrow(plotter, lobe.wi[0] * weight, _DELTA, radius=0.018)
-            labels.append(_Label(lobe.wi[0] * 0.55 * weight, f"δ, weight {weight:.3g}  ", _DELTA, "right"))
+            # To the left of an arrow that points to the left: under it when it rises, over it when it falls.
+            level: _Level = "bottom" if lobe.wi[0, 2] < 0 else "top"
+            place = lobe.wi[0] * 0.6 * weight
+            labels.append(_Label(place, f"δ, weight {weight:.3g}     ", _DELTA, "right", level))
             lines.append(f"delta lobe at θᵢ = {_polar(lobe.wi[0]):.1f}°: {weight:.4g} of the flux")
     _add_arrow(plotter, wo * 1.1, _VIEW)
     if theta < math.radians(4):
@@ -96,7 +104,7 @@ def lobe_scene(
         _add_dashes(plotter, np.array([0.0, 0.0, 1.1]), unit)
     _add_dome(plotter, phi, unit, opacity=0.55 if below else 0.85)
     _add_texts(plotter, labels, _title(model), lines, unit)
-    _aim(plotter, phi, below)
+    _aim(plotter, phi, below, size[1] / (900 * unit))
     return plotter
 
 
@@ -228,7 +236,7 @@ def _add_texts(plotter: Any, labels: list[_Label], title: str, lines: list[str],
             shape=None,
             always_visible=True,
             justification_horizontal=label.side,
-            justification_vertical="center",
+            justification_vertical=label.level,
         )
     for row, text in enumerate([title, *lines]):
         place = (0.03, 0.945 - 0.05 * (row > 0) - 0.038 * max(row - 1, 0))
@@ -236,13 +244,13 @@ def _add_texts(plotter: Any, labels: list[_Label], title: str, lines: list[str],
         _set_font(added.prop, (21 if row else 27) * unit)
 
 
-def _aim(plotter: Any, phi: float, below: bool) -> None:
+def _aim(plotter: Any, phi: float, below: bool, stretch: float) -> None:
     """Look at the plane of incidence nearly from the side, with ``wo`` on the right."""
     azimuth = phi - np.pi / 2 + np.radians(20)
     away = spherical_to_cartesian(np.radians(70), azimuth)
     right = spherical_to_cartesian(np.pi / 2, azimuth + np.pi / 2)
     focus = np.array([0.0, 0.0, 0.34 if below else 0.5]) + 0.16 * right
-    plotter.camera.position = tuple(focus + (7.6 if below else 6.3) * away)
+    plotter.camera.position = tuple(focus + (7.6 if below else 6.3) * stretch * away)
     plotter.camera.focal_point = tuple(focus)
     plotter.camera.up = (0.0, 0.0, 1.0)
     plotter.camera.view_angle = 20.0
