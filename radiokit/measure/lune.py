@@ -34,8 +34,7 @@ def lune(
     """Integrate over the directions that are above both the horizon and that of ``zenith``: ∫ g(ω) dω.
 
     Longitude and latitude about the axis in which the two horizons meet make both of them coordinate
-    lines, so that no kink is inside. The lune is cut at the mirror direction of ``wo``, towards which the
-    nodes crowd.
+    lines, so that no kink is inside. The lune is cut where the lobe peaks, and the nodes crowd there.
 
     Parameters
     ----------
@@ -46,7 +45,7 @@ def lune(
     wo : array_like, shape (3,)
         The direction whose mirror image the integrand may peak at; above the horizon.
     width : float, optional
-        The lobe's width in slope; found when not given.
+        The lobe's width in slope; found when not given, and then a lobe around ``wo`` itself is found too.
     rtol, atol : float
         The error may be ``max(atol, rtol |value|)``.
     max_evaluations : int
@@ -66,19 +65,19 @@ def lune(
     if sine == 0:
         nothing: Any = 0.0 * np.asarray(integrand(_UP[None, :]), dtype=float)[0]
         return Estimate(nothing, nothing, "truncation", 1, method="lune")
-    spent = 0
+    spent, peak = 0, np.array([-wo[0], -wo[1], wo[2]])
     if width is None:
         lobe = find_lobe(integrand, wo)
-        width, spent = lobe.width, lobe.evaluations
+        width, spent = lobe.core, lobe.evaluations
+        peak = wo if lobe.retro else peak
     opening = float(angle_between(_UP, -zenith))
     across = np.array([zenith[0], zenith[1], 0.0]) / sine
     axis = np.array([-across[1], across[0], 0.0])
 
     # χ is the longitude above the horizon, up to that of the zenith at χ = opening; λ is the latitude.
-    mirror = np.array([-wo[0], -wo[1], wo[2]])
-    along = float(mirror @ across)
-    peak_chi = float(np.clip(np.arctan2(mirror[2], along), 0.0, opening))
-    peak_lambda = float(np.arctan2(mirror @ axis, np.hypot(mirror[2], along)))
+    along = float(peak @ across)
+    peak_chi = float(np.clip(np.arctan2(peak[2], along), 0.0, opening))
+    peak_lambda = float(np.arctan2(peak @ axis, np.hypot(peak[2], along)))
     chi_sides = [side for side in ((1.0, opening - peak_chi), (-1.0, peak_chi)) if side[1] > 0]
     lambda_sides = [(1.0, np.pi / 2 - peak_lambda), (-1.0, np.pi / 2 + peak_lambda)]
     # Near the horizon a lobe is as wide as ever in elevation, but in azimuth only 2 w (wo·h) wide.
