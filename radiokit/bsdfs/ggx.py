@@ -65,6 +65,7 @@ class GGX(BSDF):
 
     name = "ggx"
     SOURCE = SOURCE
+    EXAMPLES = ({}, {"alpha": 1.0}, {"alpha": 0.01}, {"alpha": 0.001}, {"alpha": 0.2, "eta": 0.2, "k": 3.9})
 
     alpha: float = parameter("[1e-6, 1]", "1", "width of the slope distribution", default=0.3)
     eta: float | None = parameter("(0, inf)", "1", "real part of the relative index", default=None)

@@ -45,6 +45,7 @@ class Lambert(BSDF):
 
     name = "lambert"
     SOURCE = SOURCE
+    EXAMPLES = ({}, {"reflectance": 0.5}, {"reflectance": 0.0})
 
     reflectance: float = parameter("[0, 1]", "1", "albedo", default=1.0)
 

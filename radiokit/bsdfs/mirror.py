@@ -44,6 +44,7 @@ class Mirror(BSDF):
 
     name = "mirror"
     SOURCE = SOURCE
+    EXAMPLES = ({}, {"reflectance": 0.5})
 
     reflectance: float = parameter("[0, 1]", "1", "share of the flux", default=1.0)
 

@@ -46,6 +46,7 @@ class Phong(BSDF):
 
     name = "phong"
     SOURCE = SOURCE
+    EXAMPLES = ({}, {"exponent": 1.0}, {"exponent": 1000.0, "reflectance": 0.5})
 
     exponent: float = parameter("[1, 1e6]", "1", "exponent of the lobe's cosine", default=10.0)
     reflectance: float = parameter("[0, 1]", "1", "albedo at normal incidence", default=1.0)

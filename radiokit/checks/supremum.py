@@ -12,7 +12,7 @@ from radiokit.checks.probes import GRAZING, channels, polar
 from radiokit.contracts.albedo import Side, delta_albedo, directional_albedo, integrand
 from radiokit.contracts.bsdf import BSDF, FloatArray
 from radiokit.facts.estimate import Estimate
-from radiokit.measure.quadrature import BLOCK
+from radiokit.measure.converge import BLOCK
 from radiokit.measure.slope import find_lobe, slope_rule, turned
 
 __all__ = ["STEP", "Extremum", "scan_supremum"]

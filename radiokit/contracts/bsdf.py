@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
@@ -18,7 +19,7 @@ from radiokit.facts.source import Source
 if TYPE_CHECKING:
     from radiokit.measure.twin import Twin
 
-__all__ = ["BSDF", "Claims", "DeltaLobe", "FloatArray", "bsdf", "list_bsdfs"]
+__all__ = ["BSDF", "REGISTRY", "Claims", "DeltaLobe", "FloatArray", "bsdf", "list_bsdfs"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -63,7 +64,12 @@ class BSDF(ABC):
 
     name: ClassVar[str] = ""
     SOURCE: ClassVar[Source]
+    EXAMPLES: ClassVar[tuple[Mapping[str, Any], ...]] = ({},)
+    """Parameters, easy and hard, with which ``radiokit validate`` puts the model before the judges."""
+
     isotropic: ClassVar[bool] = True
+    """Whether f is unchanged by a turn about the normal, and by mirroring at the plane of incidence."""
+
     precision: float = float(np.finfo(float).eps)
     """Rounding unit of the values; larger than float64's for a function that computes in float32."""
 
@@ -134,7 +140,7 @@ class BSDF(ABC):
         return value[()]
 
 
-_registry = Registry("BSDF", "radiokit.bsdfs", BSDF, "radiokit.bsdfs")
+REGISTRY = Registry("BSDF", "radiokit.bsdfs", BSDF, "radiokit.bsdfs")
 
 
 def list_bsdfs() -> list[str]:
@@ -143,7 +149,7 @@ def list_bsdfs() -> list[str]:
     >>> "lambert" in list_bsdfs()
     True
     """
-    return _registry.names()
+    return REGISTRY.names()
 
 
 def bsdf(name: str, **parameters: Any) -> BSDF:
@@ -161,5 +167,5 @@ def bsdf(name: str, **parameters: Any) -> BSDF:
     >>> bsdf("lambert", reflectance=0.5)
     Lambert(reflectance=0.5)
     """
-    model: BSDF = _registry.make(name, parameters)
+    model: BSDF = REGISTRY.make(name, parameters)
     return model

@@ -14,7 +14,7 @@ from radiokit.contracts.vectors import check_vectors
 from radiokit.facts.errors import RadiokitError
 from radiokit.facts.estimate import Estimate
 
-__all__ = ["Emitter", "emitter", "list_emitters"]
+__all__ = ["REGISTRY", "Emitter", "emitter", "list_emitters"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -68,7 +68,7 @@ class Emitter(ABC):
         return None
 
 
-_registry = Registry("emitter", "radiokit.emitters", Emitter, "radiokit.emitters")
+REGISTRY = Registry("emitter", "radiokit.emitters", Emitter, "radiokit.emitters")
 
 
 def list_emitters() -> list[str]:
@@ -77,7 +77,7 @@ def list_emitters() -> list[str]:
     >>> "point" in list_emitters()
     True
     """
-    return _registry.names()
+    return REGISTRY.names()
 
 
 def emitter(name: str, **parameters: Any) -> Emitter:
@@ -93,5 +93,5 @@ def emitter(name: str, **parameters: Any) -> Emitter:
     >>> emitter("constant", radiance=1.0).name
     'constant'
     """
-    light: Emitter = _registry.make(name, parameters)
+    light: Emitter = REGISTRY.make(name, parameters)
     return light

@@ -60,6 +60,20 @@ class Registry:
             raise UnknownNameError(self.kind, name, self.classes)
         return self.classes[name]
 
+    def by_class_name(self, name: str) -> type:
+        """Return the class that is called ``name`` in Python, such as ``GGX``; for a package's lazy names.
+
+        Raises
+        ------
+        AttributeError
+            When there is none.
+        """
+        for cls in self.classes.values():
+            if cls.__name__ == name:
+                return cls
+        known = ", ".join(cls.__name__ for cls in self.classes.values())
+        raise AttributeError(f"{self.package} has no class {name!r}; it has: {known}")
+
     def make(self, name: str, parameters: dict[str, Any]) -> Any:
         """Return the model called ``name`` with these parameters."""
         return build(self.kind, name, self.get(name), parameters)

@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.facts.errors import NonFiniteError, ParameterError
+from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
+from radiokit.measure.converge import GK21, Integrand, RuleSum, adaptive, apply_rule, converge
 from radiokit.measure.slope import find_lobe, gauss_legendre, mirrored, slope_map, slope_rule, turned
 
-__all__ = ["BLOCK", "box", "converge", "hemisphere"]
+__all__ = ["box", "hemisphere"]
 
 FloatArray = npt.NDArray[np.float64]
-Integrand = Callable[[FloatArray], Any]
 
 SIZES = (16, 24, 32, 48, 64, 96, 128, 192)
 """Nodes along each axis, tried in turn until rules agree."""
@@ -25,73 +25,11 @@ SIZES = (16, 24, 32, 48, 64, 96, 128, 192)
 WIDTHS = (1.0, 1.35, 0.8, 1.2, 0.9, 1.1, 0.85, 1.0)
 """Factors on the lobe's width, so that consecutive rules do not fail in the same way."""
 
-SAFETY = 2.0
-"""Factor on the difference of two rules; the coarser one errs far more than the finer one."""
+SCAN = 4096
+"""Points of the scan that every unknown integrand gets."""
 
-MEMORY = 0.01
-"""Share of the last-but-one difference that the bound keeps, against an accidental agreement."""
-
-ROUNDING = 64 * float(np.finfo(float).eps)
-"""Rounding of a weighted sum, relative to the sum of absolute terms; 21 eps is the most seen."""
-
-BLOCK = 1 << 16
-"""Points in one call of an integrand, so that its temporaries stay in cache."""
-
-_GK21 = 2 * 21 * 21 * 4  # points of a subdivision of SciPy's cubature in two dimensions: value and error
-
-
-@dataclass(frozen=True)
-class _Sum:
-    """What one rule gave: the sum, the sum of absolute terms, and the points used."""
-
-    value: Any
-    size: Any
-    points: int
-
-
-def _apply(integrand: Integrand, points: FloatArray, weight: FloatArray) -> _Sum:
-    """Sum weighted values in blocks, refusing values that are not finite."""
-    value: Any = 0.0
-    size: Any = 0.0
-    for start in range(0, len(points), BLOCK):
-        part = points[start : start + BLOCK]
-        found = np.asarray(integrand(part), dtype=float)
-        if not np.all(np.isfinite(found)):
-            row = int(np.argwhere(~np.isfinite(found))[0][0])
-            raise NonFiniteError(
-                f"the integrand is {found[row]} at {tuple(part[row].tolist())}",
-                value=found[row],
-                at=part[row].copy(),
-            )
-        w = weight[start : start + BLOCK]
-        value = value + w @ found
-        size = size + w @ np.abs(found)
-    return _Sum(value, size, len(points))
-
-
-def converge(rules: Iterable[_Sum], rtol: float, atol: float) -> Estimate:
-    """Go through ever finer rules until their differences bound the error as asked.
-
-    The bound is ``SAFETY`` times the last difference, never less than a hundredth of the one before, plus
-    rounding. Without convergence the finest rule is returned with ``converged=False``.
-    """
-    start = time.perf_counter()
-    values: list[Any] = []
-    evaluations = 0
-    error: Any = np.inf
-    for found in rules:
-        evaluations += found.points
-        values.append(found.value)
-        if len(values) < 3:
-            continue
-        last, before = np.abs(values[-1] - values[-2]), np.abs(values[-2] - values[-3])
-        error = SAFETY * np.maximum(last, MEMORY * before) + ROUNDING * found.size
-        if np.all(error <= np.maximum(atol, rtol * np.abs(values[-1]))):
-            break
-    else:
-        seconds = time.perf_counter() - start
-        return Estimate(values[-1], error, "truncation", evaluations, seconds, "", False)
-    return Estimate(values[-1], error, "truncation", evaluations, time.perf_counter() - start)
+DOUBT = 2.0
+"""Standard deviations between a rule and the scan that raise doubt; evenly spread points err by far less."""
 
 
 def hemisphere(
@@ -141,29 +79,34 @@ def hemisphere(
     """
     start = time.perf_counter()
     wo = np.asarray(wo, dtype=float)
-    spent = 0
-    if width is None:
+    spent, known = 0, width is not None
+    if width is not None:
+        core = width
+    else:
         lobe = find_lobe(integrand, wo)
-        width, spent = lobe.width, lobe.evaluations
+        width, core, spent = lobe.width, lobe.core, lobe.evaluations
         if lobe.retro:
             original = integrand
             integrand = lambda w: original(turned(w))  # noqa: E731
     sides = 1 if symmetric else 2
-    sizes = [n for n in SIZES if sides * n * n <= max_evaluations]
+    scan = None if known else _scan(integrand, wo, core)
+    spent += 0 if scan is None else SCAN
+    total = spent + np.cumsum([sides * n * n for n in SIZES])
+    sizes = [n for n, needed in zip(SIZES, total, strict=True) if needed <= max_evaluations] or [SIZES[0]]
 
-    def rules() -> Iterator[_Sum]:
+    def rules() -> Iterator[RuleSum]:
         for n, factor in zip(sizes, WIDTHS, strict=False):
             wi, weight = slope_rule(wo, width * factor, n, symmetric=symmetric)
-            yield _apply(integrand, wi, weight)
+            yield apply_rule(integrand, wi, weight)
 
     found = converge(rules(), rtol, atol)
     method = "slope-space quadrature"
     budget = max_evaluations - found.evaluations - spent
-    if not found.converged and budget > 4 * _GK21:
+    if (not found.converged or _missed(found, scan) > 0) and budget > 4 * GK21:
 
         def panels(scale: float) -> Integrand:
             def square(points: FloatArray) -> Any:
-                wi, weight, _ = slope_map(wo, width * scale, points[:, 0], points[:, 1])
+                wi, weight, _ = slope_map(wo, core * scale, points[:, 0], points[:, 1])
                 if symmetric:
                     value = np.asarray(integrand(wi))
                 else:
@@ -173,10 +116,14 @@ def hemisphere(
 
             return square
 
-        adaptive = _adaptive(panels(1.0), panels(1.0 / 3.0), rtol, atol, budget // sides)
-        if np.all(adaptive.error <= found.error) or not adaptive.converged:
-            adaptive = replace(adaptive, evaluations=adaptive.evaluations * sides + found.evaluations)
-            found, method = adaptive, "adaptive cubature in slope space"
+        refined = adaptive(panels(1.0), panels(1.0 / 3.0), rtol, atol, budget // sides)
+        if np.all(refined.error <= found.error) or not refined.converged:
+            refined = replace(refined, evaluations=refined.evaluations * sides + found.evaluations)
+            found, method = refined, "adaptive cubature in slope space"
+    missed = _missed(found, scan)
+    if missed > 0:
+        note = "a scan of the hemisphere found mass that the rules missed"
+        found = replace(found, error=np.maximum(found.error, 2 * missed), converged=False, note=note)
     return replace(
         found,
         evaluations=found.evaluations + spent,
@@ -184,6 +131,25 @@ def hemisphere(
         method=method,
         note=found.note if found.note or found.converged else "the tolerance was not reached",
     )
+
+
+def _scan(integrand: Integrand, wo: FloatArray, width: float) -> tuple[Any, Any]:
+    """Return a rough integral and its uncertainty from points spread evenly, which see between the nodes."""
+    index = np.arange(1, SCAN + 1)
+    x, s = (0.5 + index * 0.7548776662466927) % 1.0, (0.5 + index * 0.5698402909980532) % 1.0
+    wi, weight, _ = slope_map(wo, width, x, s)
+    wi[::2] = mirrored(wi[::2], wo)
+    terms = (np.asarray(integrand(wi), dtype=float).T * weight).T
+    return terms.mean(axis=0), terms.std(axis=0) / np.sqrt(SCAN)
+
+
+def _missed(found: Estimate, scan: tuple[Any, Any] | None) -> float:
+    """Return by how much an integral and the scan differ beyond what either allows; 0 where they agree."""
+    if scan is None:
+        return 0.0
+    mean, spread = scan
+    difference = np.abs(found.value - mean)
+    return float(np.max(np.where(difference > DOUBT * spread + found.error, difference, 0.0)))
 
 
 def box(
@@ -226,20 +192,20 @@ def box(
     def unit(points: FloatArray) -> Any:
         return np.asarray(integrand(low + span * points)) * area
 
-    def rules() -> Iterator[_Sum]:
+    def rules() -> Iterator[RuleSum]:
         for n in SIZES:
             if n * n > max_evaluations:
                 return
             x, w = gauss_legendre(n)
             grid = np.stack(np.meshgrid(x, x, indexing="ij"), axis=-1).reshape(-1, 2)
-            yield _apply(unit, grid, np.outer(w, w).ravel())
+            yield apply_rule(unit, grid, np.outer(w, w).ravel())
 
     found = converge(rules(), rtol, atol)
     method = "Gauss-Legendre"
     budget = max_evaluations - found.evaluations
-    if not found.converged and budget > 4 * _GK21:
-        adaptive = _adaptive(unit, _bent(unit), rtol, atol, budget)
-        found = replace(adaptive, evaluations=adaptive.evaluations + found.evaluations)
+    if not found.converged and budget > 4 * GK21:
+        refined = adaptive(unit, _bent(unit), rtol, atol, budget)
+        found = replace(refined, evaluations=refined.evaluations + found.evaluations)
         method = "adaptive cubature"
     note = found.note if found.note or found.converged else "the tolerance was not reached"
     return replace(found, seconds=time.perf_counter() - start, method=method, note=note)
@@ -255,55 +221,3 @@ def _bent(unit: Integrand) -> Integrand:
         return (np.asarray(unit(moved)).T * jacobian).T
 
     return bent
-
-
-def _adaptive(one: Integrand, two: Integrand, rtol: float, atol: float, budget: int) -> Estimate:
-    """Run SciPy's cubature on two forms of the same integral over the unit square and compare them."""
-    from scipy.integrate import cubature
-
-    counted = 0
-
-    def guarded(integrand: Integrand) -> Integrand:
-        def count(points: FloatArray) -> Any:
-            nonlocal counted
-            counted += len(points)
-            value = np.asarray(integrand(points), dtype=float)
-            if not np.all(np.isfinite(value)):
-                raise NonFiniteError("the integrand is not finite", value=value)
-            return value
-
-        return count
-
-    limit = max(1, budget // (2 * _GK21))
-    runs = [
-        cubature(
-            guarded(form),
-            [0.0, 0.0],
-            [1.0, 1.0],
-            rule="gk21",
-            rtol=rtol / 2,
-            atol=atol / 2,
-            max_subdivisions=limit,
-        )
-        for form in (one, two)
-    ]
-    first, second = runs
-    difference = np.abs(first.estimate - second.estimate)
-    claimed = first.error + second.error
-    size = np.abs(first.estimate)
-    error = np.maximum(claimed, SAFETY * difference) + ROUNDING * size
-    converged = bool(np.all(error <= np.maximum(atol, rtol * size)))
-    note = ""
-    if np.any(difference > np.maximum(claimed, 1e3 * ROUNDING * size)):
-        note = (
-            f"two independent rules disagree beyond their claims: {_short(first)} and {_short(second)}; "
-            "the integrand may have a kink on a panel's edge, or no finite integral"
-        )
-    value = (first.estimate + second.estimate) / 2
-    return Estimate(value[()], error[()], "truncation", counted, converged=converged, note=note)
-
-
-def _short(run: Any) -> str:
-    worst = int(np.argmax(np.atleast_1d(run.error)))
-    value, error = np.atleast_1d(run.estimate)[worst], np.atleast_1d(run.error)[worst]
-    return f"{value:.6g} ± {error:.1g}"

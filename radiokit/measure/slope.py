@@ -195,11 +195,13 @@ def _grid(
 class Lobe:
     """Where an unknown integrand has its mass: the width in slope, and whether around ``wo`` itself.
 
+    ``core`` is the width of the narrowest part that matters, where lobes of different widths add up.
     ``retro`` says that the lobe lies around ``wo`` and not around its mirror direction; turning every
     direction by half a turn about the normal exchanges the two.
     """
 
     width: float
+    core: float
     retro: bool
     evaluations: int
 
@@ -219,7 +221,7 @@ def find_lobe(integrand: Callable[[FloatArray], Any], wo: npt.ArrayLike) -> Lobe
     wi, weight, rho = _grid(wo, np.asarray(PROBE_WIDTH), PROBE)
     both = np.concatenate([wi, mirrored(wi, wo[None, :])])
     order = np.argsort(rho)
-    best, best_mass, evaluations = Lobe(1.0, False, 0), 0.0, 0
+    best, best_mass, evaluations = Lobe(1.0, 1.0, False, 0), 0.0, 0
     for retro in (False, True):
         value = np.asarray(integrand(turned(both) if retro else both), dtype=float)
         value = np.abs(value.reshape(len(value), -1)).sum(axis=1)
@@ -227,8 +229,10 @@ def find_lobe(integrand: Callable[[FloatArray], Any], wo: npt.ArrayLike) -> Lobe
         mass = weight * (value[: len(wi)] + value[len(wi) :])
         total = mass.sum()
         if np.isfinite(total) and total > (1 + RETRO * retro) * best_mass:
-            median = rho[order][np.searchsorted(np.cumsum(mass[order]), total / 2)]
-            best, best_mass = Lobe(float(np.clip(median, 10 * PROBE_WIDTH, 1.0)), retro, 0), total
+            inner, median = rho[order][np.searchsorted(np.cumsum(mass[order]), [total / 20, total / 2])]
+            width = float(np.clip(median, 10 * PROBE_WIDTH, 1.0))
+            core = float(np.clip(4 * inner, 10 * PROBE_WIDTH, width))
+            best, best_mass = Lobe(width, core, retro, 0), total
     return replace(best, evaluations=evaluations)
 
 

@@ -78,6 +78,15 @@ class Warp(ABC):
     def _invert(self, points: FloatArray) -> tuple[FloatArray, FloatArray]: ...
 
 
+def _circle(turn: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return cosine and sine of 2π ``turn``, for turns in [0, 1], exact on the axes."""
+    quarter = np.rint(4.0 * turn)
+    angle = 2.0 * np.pi * (turn - 0.25 * quarter)  # the difference is exact
+    cosine, sine = np.cos(angle), np.sin(angle)
+    odd, sign = quarter % 2 == 1, np.where((quarter == 2) | (quarter == 3), -1.0, 1.0)
+    return sign * np.where(odd, -sine, cosine), sign * np.where(odd, cosine, sine)
+
+
 def _turn(x: FloatArray, y: FloatArray) -> FloatArray:
     """Return the azimuth as a share of the full turn, in [0, 1)."""
     share = np.arctan2(y, x) / (2.0 * np.pi)
@@ -85,7 +94,7 @@ def _turn(x: FloatArray, y: FloatArray) -> FloatArray:
 
 
 class _Cap(Warp):
-    """A uniform cap around z. ``_height`` is 1 − cos of its half-angle, from which everything follows."""
+    """A uniform cap around z, given by ``_height`` and ``_rest``: 1 − cos and 1 + cos of its half-angle."""
 
     SOURCE = Source(
         authors="Shirley",
@@ -94,19 +103,15 @@ class _Cap(Warp):
         equation="1 − z is uniform on a cap (Archimedes)",
     )
 
-    @property
-    @abstractmethod
-    def _height(self) -> float: ...
-
-    @property
-    @abstractmethod
-    def _density(self) -> float: ...
+    _height: float
+    _rest: float
+    _density: float
 
     def _sample(self, u0: FloatArray, u1: FloatArray) -> FloatArray:
         depth = self._height * u0  # 1 − z, which keeps the digits that z loses near the pole
-        radius = np.sqrt(depth * (2.0 - depth))
-        phi = 2.0 * np.pi * u1
-        return np.stack((radius * np.cos(phi), radius * np.sin(phi), 1.0 - depth), axis=-1)
+        radius = np.sqrt(depth * (2.0 * (1.0 - u0) + self._rest * u0))
+        cosine, sine = _circle(u1)
+        return np.stack((radius * cosine, radius * sine, 1.0 - depth), axis=-1)
 
     def _depth_share(self, points: FloatArray) -> FloatArray:
         """Return (1 − z) / height, for unit vectors; from the radius where z is near 1."""
@@ -131,13 +136,7 @@ class UniformSphere(_Cap):
     [[1.0, 0.0, 0.0]]
     """
 
-    @property
-    def _height(self) -> float:
-        return 2.0
-
-    @property
-    def _density(self) -> float:
-        return 0.25 / np.pi
+    _height, _rest, _density = 2.0, 0.0, 0.25 / np.pi
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -148,13 +147,7 @@ class UniformHemisphere(_Cap):
     0.0
     """
 
-    @property
-    def _height(self) -> float:
-        return 1.0
-
-    @property
-    def _density(self) -> float:
-        return 0.5 / np.pi
+    _height, _rest, _density = 1.0, 1.0, 0.5 / np.pi
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -181,14 +174,10 @@ class UniformCone(_Cap):
     def __post_init__(self) -> None:
         if not 1e-150 <= self.half_angle <= np.pi:
             raise ParameterError("half_angle", self.half_angle, "an angle in [1e-150, pi] radians")
-
-    @property
-    def _height(self) -> float:
-        return float(2.0 * np.sin(0.5 * self.half_angle) ** 2)
-
-    @property
-    def _density(self) -> float:
-        return float(1.0 / cap_solid_angle(self.half_angle))
+        half = 0.5 * self.half_angle
+        object.__setattr__(self, "_height", float(2.0 * np.sin(half) ** 2))
+        object.__setattr__(self, "_rest", float(2.0 * np.cos(half) ** 2))
+        object.__setattr__(self, "_density", float(1.0 / cap_solid_angle(self.half_angle)))
 
 
 _CONCENTRIC = Source(

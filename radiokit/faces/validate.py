@@ -1,0 +1,184 @@
+"""Validate: the main job. Every model before every judge, every closed-form case by every method."""
+
+from __future__ import annotations
+
+import platform
+import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+from importlib.metadata import version
+from typing import Any
+
+from radiokit.checks.claims import claims
+from radiokit.checks.judge import check
+from radiokit.contracts.bsdf import REGISTRY, bsdf
+from radiokit.facts.errors import RadiokitError
+from radiokit.facts.jsonable import jsonable
+from radiokit.facts.report import EXIT_CODES, Report
+from radiokit.facts.verdict import Evidence, Outcome, Verdict
+from radiokit.faces.workers import SerialExecutor
+from radiokit.measure.statistics import sidak
+from radiokit.worlds.cases.catalogue import case, list_cases
+
+__all__ = ["LEVEL", "CaseRow", "Validation", "validate"]
+
+LEVEL = 1e-6
+"""Chance that a run rejects something right, over all its statistical tests together."""
+
+MUST_HOLD = ("values", "claims", "sampling")
+"""What must hold of a model; a law that it breaks as claimed is no fault."""
+
+
+@dataclass(frozen=True)
+class CaseRow:
+    """One closed-form case by one method: the answer, the truth, and the cost."""
+
+    case: str
+    method: str
+    exact: float
+    verdict: Verdict
+
+    @property
+    def true_error(self) -> float | None:
+        """Return |value − exact|, or None when the method gave no value."""
+        estimate = self.verdict.estimate
+        return None if estimate is None else float(abs(estimate.value - self.exact))
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the row as JSON-ready data."""
+        estimate = self.verdict.estimate
+        return {
+            "case": self.case,
+            "method": self.method,
+            "exact": jsonable(self.exact),
+            "value": None if estimate is None else jsonable(estimate.value),
+            "true_error": jsonable(self.true_error),
+            "claimed_error": None if estimate is None else jsonable(estimate.error),
+            "kind": None if estimate is None else estimate.kind,
+            "ratio": None if estimate is None else jsonable(estimate.ratio(self.exact)),
+            "p_value": jsonable(self.verdict.p_value),
+            "evaluations": self.verdict.evaluations,
+            "seconds": self.verdict.seconds,
+            "outcome": str(self.verdict.outcome),
+            "message": self.verdict.message,
+        }
+
+
+@dataclass(frozen=True)
+class Validation:
+    """What a run of ``validate`` found, and on which machine."""
+
+    models: tuple[Report, ...]
+    cases: tuple[CaseRow, ...]
+    seconds: float
+    workers: int
+
+    @property
+    def outcome(self) -> Outcome:
+        """The worst outcome of what must hold."""
+        found = {row.verdict.outcome for row in self.cases}
+        found |= {v.outcome for report in self.models for v in report if v.check in MUST_HOLD}
+        for outcome in (Outcome.VIOLATED, Outcome.INCONCLUSIVE):
+            if outcome in found:
+                return outcome
+        return Outcome.HOLDS
+
+    @property
+    def exit_code(self) -> int:
+        """0 when all holds, 1 on a violation, 3 when something is inconclusive."""
+        return EXIT_CODES[self.outcome]
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the run as JSON-ready data."""
+        return {
+            "outcome": str(self.outcome),
+            "level": LEVEL,
+            "seconds": self.seconds,
+            "workers": self.workers,
+            "machine": machine(),
+            "models": [report.to_json() for report in self.models],
+            "cases": [row.to_json() for row in self.cases],
+        }
+
+
+def machine() -> dict[str, str]:
+    """Return what ran: the versions, the processor and the system."""
+    packages = ("numpy", "scipy", "sympy")
+    return {
+        "radiokit": version("radiokit"),
+        "python": platform.python_version(),
+        **{name: version(name) for name in packages},
+        "machine": platform.machine(),
+        "system": platform.system(),
+    }
+
+
+def validate(
+    *,
+    executor: Executor | None = None,
+    workers: int = 1,
+    seed: int = 0,
+    progress: Callable[[int, int], None] | None = None,
+) -> Validation:
+    """Put every model before every judge, and answer every closed-form case by every method.
+
+    Parameters
+    ----------
+    executor : concurrent.futures.Executor, optional
+        Where the work is done; the findings do not depend on it.
+    workers : int
+        How many workers it has, for the record.
+    seed : int
+        For the Monte Carlo methods.
+    progress : callable, optional
+        Called with the number of finished tasks and the number of all.
+    """
+    start = time.perf_counter()
+    models = [(name, dict(values)) for name, cls in REGISTRY.classes.items() for values in cls.EXAMPLES]
+    rows = [(name, method) for name in list_cases() for method in case(name).methods]
+    tasks: list[tuple[Any, ...]] = [("model", name, values, len(models)) for name, values in models]
+    tasks += [("case", name, method, len(rows), seed + i) for i, (name, method) in enumerate(rows)]
+    found = list(_run(executor or SerialExecutor(), tasks, progress))
+    return Validation(
+        models=tuple(item for item in found if isinstance(item, Report)),
+        cases=tuple(item for item in found if isinstance(item, CaseRow)),
+        seconds=time.perf_counter() - start,
+        workers=workers,
+    )
+
+
+def _run(
+    executor: Executor, tasks: Sequence[tuple[Any, ...]], progress: Callable[[int, int], None] | None
+) -> Iterator[Report | CaseRow]:
+    for done, item in enumerate(executor.map(_task, tasks), start=1):
+        if progress is not None:
+            progress(done, len(tasks))
+        yield item
+
+
+def _task(task: tuple[Any, ...]) -> Report | CaseRow:
+    if task[0] == "model":
+        return _judge_model(*task[1:])
+    return _answer_case(*task[1:])
+
+
+def _judge_model(name: str, values: dict[str, Any], tests: int) -> Report:
+    model = bsdf(name, **values)
+    report = check(model, tests=tests)
+    return replace(report, verdicts=(*report.verdicts, claims(model, report)))
+
+
+def _answer_case(name: str, method: str, tests: int, seed: int) -> CaseRow:
+    problem = case(name)
+    try:
+        verdict = problem.verdict(method, seed, level=sidak(LEVEL, tests))
+    except RadiokitError as error:
+        verdict = Verdict(
+            check=name,
+            claim=problem.title,
+            outcome=Outcome.VIOLATED,
+            evidence=Evidence.MEASURED,
+            message=f"the method failed: {error}",
+        )
+    return CaseRow(name, method, problem.exact, verdict)

@@ -1,0 +1,207 @@
+"""Quadrature: bounds hold against exact values, kinks and divergence are found out, rules do not lie."""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+import pytest
+
+from radiokit.facts.directions import spherical_to_cartesian
+from radiokit.facts.errors import NonFiniteError, ParameterError
+from radiokit.measure.converge import converge
+from radiokit.measure.quadrature import box, hemisphere
+from radiokit.measure.slope import find_lobe, gauss_legendre, slope_inverse, slope_map, slope_rule
+
+ANGLES_DEG = (0.0, 30.0, 60.0, 80.0, 89.0, 89.9, 89.99)
+
+
+def toward(theta_deg, phi=0.4):
+    return spherical_to_cartesian(np.deg2rad(theta_deg), phi)
+
+
+def ggx_times_cosine(wi, wo, alpha):
+    s = wi + wo
+    d = s[:, 0] ** 2 + s[:, 1] ** 2 + alpha**2 * s[:, 2] ** 2
+    ndf = alpha**2 * np.sum(s * s, axis=1) ** 2 / (np.pi * d * d)
+    ri = np.sqrt(wi[:, 2] ** 2 + alpha**2 * (wi[:, 0] ** 2 + wi[:, 1] ** 2))
+    ro = np.sqrt(wo[2] ** 2 + alpha**2 * (wo[0] ** 2 + wo[1] ** 2))
+    return ndf * 0.5 * wi[:, 2] / (wi[:, 2] * ro + wo[2] * ri)
+
+
+def phong_albedo(n, theta):
+    """∫ (r·w)ⁿ cosθ dω over the hemisphere, by mpmath in the frame of the mirror direction r."""
+    with mpmath.workdps(25):
+        c, s = mpmath.cos(theta), mpmath.sin(theta)
+
+        def ring(a):  # at angle a from r: ∫ max(0, cosθ) dφ, where cosθ = c cos a + s sin a cosφ
+            p, q = c * mpmath.cos(a), s * mpmath.sin(a)
+            if p >= q or q == 0:
+                return 2 * mpmath.pi * p
+            edge = mpmath.acos(-p / q)
+            return 2 * (p * edge + q * mpmath.sin(edge))
+
+        knots = [0, mpmath.pi / 2 - theta, mpmath.pi / 2]
+        return mpmath.quad(lambda a: mpmath.cos(a) ** n * mpmath.sin(a) * ring(a), knots)
+
+
+def test_gauss_legendre_is_exact_to_its_degree():
+    for n in (1, 2, 5, 24):
+        x, w = gauss_legendre(n)
+        assert w @ x ** (2 * n - 1) == pytest.approx(1 / (2 * n), rel=1e-13)
+    assert abs(w @ x**48 - 1 / 49) > 1e-16  # one degree more is not exact
+
+
+@pytest.mark.parametrize("theta", ANGLES_DEG)
+@pytest.mark.parametrize("width", [1e-3, 0.05, 1.0])
+def test_slope_nodes_are_unit_vectors_above_the_horizon(theta, width):
+    wi, weight = slope_rule(toward(theta), width, 24)
+    assert np.abs(np.linalg.norm(wi, axis=1) - 1).max() < 5e-15
+    assert wi[:, 2].min() > 0
+    assert weight.min() > 0
+
+
+@pytest.mark.parametrize("theta", ANGLES_DEG)
+def test_slope_map_inverts(theta, rng):
+    x, s = rng.random((2, 200))
+    wo = toward(theta)
+    wi, _, _ = slope_map(wo, 0.1, x, s)
+    back_x, back_s, far = slope_inverse(wo, 0.1, wi)
+    assert np.abs(back_x - x).max() < 1e-6
+    assert np.abs(back_s - s).max() < 1e-6
+    assert not far.any()
+
+
+def test_one_rule_for_many_directions_is_many_rules():
+    wo = toward(np.array([10.0, 70.0]))
+    wi, weight = slope_rule(wo, [0.1, 0.5], 12)
+    for k, width in enumerate((0.1, 0.5)):
+        one, w = slope_rule(wo[k], width, 12)
+        assert np.array_equal(one, wi[k])
+        assert np.array_equal(w, weight[k])
+
+
+@pytest.mark.parametrize("theta", ANGLES_DEG)
+def test_bound_holds_for_ggx_of_full_roughness(theta):
+    wo = toward(theta)
+    found = hemisphere(lambda w: ggx_times_cosine(w, wo, 1.0), wo=wo, width=1.0, rtol=1e-12)
+    exact = float(1 - mpmath.mpf(wo[2]) * mpmath.log1p(1 / mpmath.mpf(wo[2])))
+    assert found.converged
+    assert abs(found.value - exact) <= found.error <= 1e-12 * exact
+
+
+@pytest.mark.parametrize("theta", [0.0, 45.0, 80.0, 89.0])
+@pytest.mark.parametrize("n", [1, 2, 10, 1000])
+def test_bound_holds_for_phong_lobes_cut_by_the_horizon(n, theta):
+    wo = toward(theta)
+    mirror = wo * [-1, -1, 1]
+    found = hemisphere(lambda w: np.maximum(w @ mirror, 0) ** n * w[:, 2], wo=wo, max_evaluations=1_000_000)
+    exact = float(phong_albedo(n, mpmath.atan2(mpmath.hypot(*wo[:2]), wo[2])))
+    assert abs(found.value - exact) <= found.error <= 2e-5 * exact
+
+
+@pytest.mark.parametrize("alpha", [1e-4, 1e-3, 0.01, 0.05, 0.3])
+@pytest.mark.parametrize("theta", [0.0, 60.0, 89.0, 89.9])
+def test_a_black_box_agrees_with_the_known_width_within_both_bounds(alpha, theta):
+    wo = toward(theta)
+
+    def f(w):
+        return ggx_times_cosine(w, wo, alpha)
+
+    known = hemisphere(f, wo=wo, width=alpha, rtol=1e-10)
+    unknown = hemisphere(f, wo=wo, rtol=1e-8)
+    assert known.converged
+    assert unknown.converged
+    assert abs(known.value - unknown.value) <= known.error + unknown.error
+
+
+@pytest.mark.parametrize("alpha", [1e-4, 0.01, 0.3])
+@pytest.mark.parametrize("retro", [False, True])
+def test_the_lobe_is_found(alpha, retro):
+    wo = toward(50.0)
+    turn = np.array([-1.0, -1.0, 1.0]) if retro else np.ones(3)
+    lobe = find_lobe(lambda w: ggx_times_cosine(w * turn, wo, alpha), wo)
+    assert alpha / 4 < lobe.width <= 4 * alpha
+    assert lobe.retro is (retro and alpha < 0.1)  # a wide lobe is resolved either way
+
+
+def test_bound_holds_for_a_band_with_jumps():
+    low, high = 0.498, 0.502
+    found = hemisphere(lambda w: 100.0 * ((w[:, 2] > low) & (w[:, 2] < high)) * w[:, 2])
+    exact = 100 * np.pi * (high**2 - low**2)
+    assert not found.converged
+    assert abs(found.value - exact) <= found.error
+
+
+def test_a_divergent_integral_is_not_given_a_number():
+    wo = toward(30.0)
+    mirror = wo * [-1, -1, 1]
+    found = hemisphere(lambda w: 1 / np.sum((w - mirror) ** 2, axis=1), wo=wo, max_evaluations=500_000)
+    assert not found.converged
+    assert found.error > 0.01 * found.value
+    assert found.note
+
+
+def test_several_channels_at_once():
+    found = hemisphere(lambda w: np.stack([w[:, 2], w[:, 2] ** 2, np.ones(len(w))], axis=1), rtol=1e-10)
+    exact = np.array([np.pi, 2 * np.pi / 3, 2 * np.pi])
+    assert np.all(np.abs(found.value - exact) <= found.error)
+
+
+def test_a_value_that_is_not_finite_is_named():
+    with pytest.raises(NonFiniteError, match=r"the integrand is nan at \("):
+        hemisphere(lambda w: np.where(w[:, 2] > 0.5, np.nan, 1.0))
+
+
+def test_too_small_a_budget_is_admitted():
+    wo = toward(89.9)
+    found = hemisphere(lambda w: ggx_times_cosine(w, wo, 1e-3), wo=wo, rtol=1e-10, max_evaluations=12_000)
+    assert not found.converged
+    assert found.evaluations <= 12_000
+    assert found.note == "the tolerance was not reached"
+
+
+def test_evaluations_are_counted(rng):
+    seen = 0
+
+    def f(w):
+        nonlocal seen
+        seen += len(w)
+        return np.abs(w[:, 0]) * w[:, 2]  # a kink, so that every stage is used
+
+    found = hemisphere(f, rtol=1e-12, max_evaluations=300_000)
+    assert found.evaluations == seen
+
+
+@pytest.mark.parametrize(
+    ("call", "says"),
+    [
+        (lambda: slope_rule((1.0, 0.0, 0.0), 1.0, 8), "above the horizon"),
+        (lambda: slope_rule((0.0, 0.0, 1.0), 0.0, 8), "width = 0.0"),
+        (lambda: box(lambda p: p[:, 0], (0, 0), (1, -1)), "high = "),
+        (lambda: box(lambda p: p[:, 0], (0, 0), (1, np.inf)), "high = "),
+    ],
+)
+def test_invalid_arguments_are_named(call, says):
+    with pytest.raises(ParameterError, match=says):
+        call()
+
+
+def test_box_bounds_hold_for_smooth_kinked_and_jumping_integrands():
+    cases = [
+        (lambda p: np.exp(p[:, 0]) * p[:, 1], (np.e - 1) / 2, 1e-12),
+        (lambda p: np.abs(p[:, 0] - 0.3), 0.29, 1e-6),
+        (lambda p: (p[:, 0] + p[:, 1] < 0.7).astype(float), 0.245, 1e-3),
+    ]
+    for f, exact, reached in cases:
+        found = box(f, (0, 0), (1, 1), max_evaluations=1_000_000)
+        assert abs(found.value - exact) <= found.error <= reached
+
+
+def test_an_accidental_agreement_of_two_rules_is_not_believed():
+    class Rule:
+        def __init__(self, value):
+            self.value, self.size, self.points = value, abs(value), 1
+
+    found = converge([Rule(v) for v in (0.5, 1.0, 1.0)], 1e-9, 0.0)
+    assert not found.converged
+    assert found.error >= 0.005
