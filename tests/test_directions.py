@@ -187,14 +187,25 @@ def test_degrees_are_refused():
 # ---------------------------------------------------------------- frames
 
 
+def frame_defect(axes):
+    rows = mpmath.matrix(axes.tolist())
+    return float(max(abs(x) for x in rows * rows.T - mpmath.eye(3)))
+
+
 def test_frames_are_orthonormal_and_right_handed(rng):
     normals = np.vstack((unit(np.array(HARD_NORMALS)), random_units(rng, 40)))
     for n, axes in zip(normals, frame(normals), strict=True):
-        rows = mpmath.matrix(axes.tolist())
-        defect = rows * rows.T - mpmath.eye(3)
-        assert max(abs(x) for x in defect) <= ULPS * 2**-52, n
-        assert mpmath.det(rows) > 0.999
+        assert frame_defect(axes) <= ULPS * 2**-52, n
+        assert mpmath.det(mpmath.matrix(axes.tolist())) > 0.999
         np.testing.assert_array_equal(axes[2], n)
+
+
+def test_a_frame_that_fails_near_minus_z_is_seen():
+    x, y, z = n = unit([3e-8, -2e-8, -1.0])
+    a = 1 / (1 + z)  # without the sign of z
+    wrong = np.array([[1 - x * x * a, -x * y * a, -x], [-x * y * a, 1 - y * y * a, -y], n])
+    assert frame_defect(wrong) > 1e-3
+    assert frame_defect(frame(n)) <= ULPS * 2**-52
 
 
 def test_the_frame_of_z_is_the_identity_without_signed_zeros():
@@ -288,6 +299,15 @@ def test_refract_has_a_twin(rng, eta, angle):
             assert vector_ulps(direction, truth, float(condition)) <= ULPS
         if truth is None or condition < 1e6:
             assert bool(total) == (truth is None)
+
+
+def test_refraction_by_the_textbook_is_seen():
+    w = unit([1.0, 0.0, 1e-9])
+    sine2 = (1 - w[2] ** 2) / 1.0
+    textbook = np.array([-w[0], -w[1], -np.sqrt(1 - sine2)])  # equal indices: straight on, were it exact
+    truth, _ = refracted(w, AXIS, 1.0)
+    assert abs(float(textbook[2] / truth[2]) - 1) > 0.9
+    assert abs(float(refract(w, eta=1.0)[0][2] / truth[2]) - 1) < 1e-15
 
 
 def test_refraction_obeys_snell_and_is_reversible(rng):

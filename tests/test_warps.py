@@ -333,7 +333,7 @@ def test_what_is_no_square_is_refused(warp, u):
         warp.sample(u)
 
 
-@pytest.mark.parametrize("half_angle", [0.0, -1.0, 4.0, np.nan, 1e-200])
+@pytest.mark.parametrize("half_angle", [0.0, -1.0, 4.0, np.nan, 1e-200, None, "wide"])
 def test_no_cone_is_refused(half_angle):
     with pytest.raises(ParameterError, match=r"^half_angle = .* an angle in \[1e-150, pi\] radians$"):
         UniformCone(half_angle=half_angle)
@@ -346,6 +346,8 @@ def test_no_cone_is_refused(half_angle):
         [(0, 0, 0), (0, 0, 0), (1, 0, 0)],
         [(0, 0, 0)] * 3,
         [(0, 0), (1, 0), (0, 1)],
+        [(0, 0, 0), (1, 0), (0, 1, 0)],
+        "abc",
         [(0, 0, np.nan), (1, 0, 0), (0, 1, 0)],
         1e-200 * np.array(CORNERS),
     ],

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
+from numbers import Real
 from typing import Any, ClassVar
 
 import numpy as np
@@ -172,7 +173,7 @@ class UniformCone(_Cap):
     half_angle: float
 
     def __post_init__(self) -> None:
-        if not 1e-150 <= self.half_angle <= np.pi:
+        if not (isinstance(self.half_angle, Real) and 1e-150 <= self.half_angle <= np.pi):
             raise ParameterError("half_angle", self.half_angle, "an angle in [1e-150, pi] radians")
         half = 0.5 * self.half_angle
         object.__setattr__(self, "_height", float(2.0 * np.sin(half) ** 2))
@@ -289,7 +290,10 @@ class UniformTriangle(Warp):
 
     def __post_init__(self) -> None:
         allowed = "three finite points (3, 3) that are not on one line"
-        corners = np.array(self.vertices, dtype=np.float64)
+        try:
+            corners = np.array(self.vertices, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise ParameterError("vertices", self.vertices, allowed) from None
         if corners.shape != (3, 3) or not np.isfinite(corners).all():
             raise ParameterError("vertices", corners.tolist(), allowed)
         edges = np.roll(corners, -1, axis=0) - corners
