@@ -137,10 +137,14 @@ def _length(v: FloatArray) -> Any:
 
 
 def _normalise(v: FloatArray) -> FloatArray:
-    """Divide finite non-zero vectors by their lengths; a power of two keeps the squares in range."""
-    _, exponent = np.frexp(np.max(np.abs(v), axis=-1, keepdims=True))
-    v = np.ldexp(v, -exponent)
-    result: FloatArray = v / np.sqrt(dot(v, v))[..., None]
+    """Divide finite non-zero vectors by their lengths; a power of two keeps extreme squares in range."""
+    with np.errstate(over="ignore"):
+        square = np.asarray(dot(v, v))
+    if not ((square > 1e-280) & (square < 1e280)).all():
+        _, exponent = np.frexp(np.max(np.abs(v), axis=-1, keepdims=True))
+        v = np.ldexp(v, -exponent)
+        square = np.asarray(dot(v, v))
+    result: FloatArray = v / np.sqrt(square)[..., None]
     return result
 
 
