@@ -37,7 +37,7 @@ SAMPLING_SOURCE = Source(
     equation="the cap of the sphere that the stretched view direction lights",
 )
 
-_TINY, _HUGE = np.finfo(float).tiny, np.finfo(float).max
+_HORIZON = 1e-150  # a cosine below this is 0: no unit vector tells them apart, and squares would underflow
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,7 +47,7 @@ class GGX(BSDF):
     Parameters
     ----------
     alpha : float
-        Width α of the slope distribution [1], not squared, in [1e-6, 1].
+        Width α of the slope distribution [1], not squared, in [1e-4, 1].
     eta : float, optional
         Real part of the relative index η + ik [1], above 0; with ``k``.
     k : float, optional
@@ -67,7 +67,7 @@ class GGX(BSDF):
     SOURCE = SOURCE
     EXAMPLES = ({}, {"alpha": 1.0}, {"alpha": 0.01}, {"alpha": 0.001}, {"alpha": 0.2, "eta": 0.2, "k": 3.9})
 
-    alpha: float = parameter("[1e-6, 1]", "1", "width of the slope distribution", default=0.3)
+    alpha: float = parameter("[1e-4, 1]", "1", "width of the slope distribution", default=0.3)
     eta: float | None = parameter("(0, inf)", "1", "real part of the relative index", default=None)
     k: float | None = parameter("[0, inf)", "1", "extinction", default=None)
 
@@ -106,18 +106,17 @@ class GGX(BSDF):
 
     def evaluate(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
         """Return f(wi, wo) [sr⁻¹]; 0 unless both directions are above the horizon."""
-        above = np.minimum(wi[..., 2], wo[..., 2]) > 0.0
+        above = np.minimum(wi[..., 2], wo[..., 2]) > _HORIZON
         density, length2 = self._density(wi, wo, above)
         root_i, root_o = self._root(wi), self._root(wo)
-        with np.errstate(over="ignore"):
-            # G₂ / (4 cosθi cosθo), after Smith's roots and cosines are multiplied out.
-            visibility = 0.5 / np.maximum(wi[..., 2] * root_o + wo[..., 2] * root_i, _TINY)
-            value = np.minimum(self._reflectance(length2) * density * visibility, _HUGE)
+        # G₂ / (4 cosθi cosθo), after Smith's roots and cosines are multiplied out.
+        inverse = 2.0 * (wi[..., 2] * root_o + wo[..., 2] * root_i)
+        value = self._reflectance(length2) * density / np.where(above, inverse, 1.0)
         return np.where(above, value, 0.0)
 
     def pdf(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
         """Return the density [sr⁻¹] of ``sample``, G₁ D / (4 cosθo); 0 below the horizon."""
-        above = np.minimum(wi[..., 2], wo[..., 2]) > 0.0
+        above = np.minimum(wi[..., 2], wo[..., 2]) > _HORIZON
         density, _ = self._density(wi, wo, above)
         return np.where(above, 0.5 * density / np.where(above, wo[..., 2] + self._root(wo), 1.0), 0.0)
 
@@ -141,7 +140,7 @@ class GGX(BSDF):
     def _weight(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
         """Return F G₂ / G₁, the cosines multiplied out."""
         cos_i, cos_o = wi[..., 2], wo[..., 2]
-        above = np.minimum(cos_i, cos_o) > 0.0
+        above = np.minimum(cos_i, cos_o) > _HORIZON
         root_i, root_o = self._root(wi), self._root(wo)
         half = wi + wo
         share = cos_i * (cos_o + root_o) / np.where(above, cos_i * root_o + cos_o * root_i, 1.0)

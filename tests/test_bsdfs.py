@@ -1,0 +1,422 @@
+"""Every model against its twin, its claims, its sampler and its limits. One row for each model.
+
+A new model needs one file in ``radiokit/bsdfs`` and one row in ``ROWS``; every test below then applies to it.
+"""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import pickle
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import pytest
+
+from radiokit.bsdfs.ggx import GGX
+from radiokit.bsdfs.lambert import Lambert
+from radiokit.checks.judge import check
+from radiokit.contracts.albedo import directional_albedo
+from radiokit.contracts.bsdf import bsdf, list_bsdfs
+from radiokit.facts.directions import half_vector, reflect, spherical_to_cartesian, unit
+from radiokit.facts.errors import ParameterError
+from radiokit.facts.estimate import Estimate
+from radiokit.measure.montecarlo import Moments
+from radiokit.measure.quadrature import hemisphere
+from radiokit.measure.statistics import sidak, z_test
+from radiokit.measure.twin import proved_zero, scaled_ulps
+
+
+@dataclass(frozen=True)
+class Row:
+    """What the suite has to know of one model.
+
+    ``ordinary`` and ``hard`` are parameter sets: all meet the tests of kernel, claims, edges and sampler, and
+    the ordinary ones the judge's statistics too. ``wrong`` pairs parameters with the message they must raise. ``albedos`` are closed forms:
+    parameters, polar angle in degrees, exact directional albedo.
+    """
+
+    name: str
+    ordinary: tuple[dict[str, Any], ...]
+    hard: tuple[dict[str, Any], ...] = ()
+    wrong: tuple[tuple[dict[str, Any], str], ...] = ()
+    albedos: tuple[tuple[dict[str, Any], float, float], ...] = field(default=())
+
+
+def ggx_albedo(theta_deg: float) -> float:
+    """Return 1 − μ ln((1 + μ)/μ), the albedo at α = 1."""
+    mu = np.cos(np.radians(theta_deg))
+    return float(1 - mu * np.log((1 + mu) / mu))
+
+
+def out_of_range(name: str, value: Any, interval: str) -> tuple[dict[str, Any], str]:
+    message = f"{name} = {value!r} is not allowed: it must be a number in {interval}"
+    return {name: value}, message
+
+
+ROWS = (
+    Row(
+        "lambert",
+        ordinary=({}, {"reflectance": 0.5}),
+        hard=({"reflectance": 0.0},),
+        wrong=(
+            out_of_range("reflectance", 1.5, "[0, 1]"),
+            out_of_range("reflectance", float("nan"), "[0, 1]"),
+        ),
+        albedos=(({"reflectance": 0.25}, 0.0, 0.25), ({"reflectance": 0.25}, 89.9, 0.25)),
+    ),
+    Row(
+        "mirror",
+        ordinary=({}, {"reflectance": 0.3}),
+        wrong=(out_of_range("reflectance", -0.1, "[0, 1]"),),
+        albedos=(({"reflectance": 0.3}, 60.0, 0.3),),
+    ),
+    Row(
+        "phong",
+        ordinary=({}, {"exponent": 50.0, "reflectance": 0.7}),
+        hard=({"exponent": 1.0}, {"exponent": 2.5}, {"exponent": 1e3}, {"exponent": 1e6}),
+        wrong=(
+            out_of_range("exponent", 0.5, "[1, 1e6]"),
+            out_of_range("exponent", "steep", "[1, 1e6]"),
+            out_of_range("reflectance", None, "[0, 1]"),
+        ),
+        # Exactly ρ at normal incidence, for every exponent; elsewhere to the digits known before.
+        albedos=tuple(({"exponent": n}, 0.0, 1.0) for n in (1.0, 10.0, 1e3, 1e6)),
+    ),
+    Row(
+        "ggx",
+        ordinary=(
+            {},
+            {"alpha": 1.0},
+            {"alpha": 0.1, "eta": 0.2, "k": 3.9},
+            {"alpha": 0.5, "eta": 1.5, "k": 0.0},
+        ),
+        hard=(
+            {"alpha": 1e-3},
+            {"alpha": 1e-4},
+            {"alpha": 1e-4, "eta": 0.2, "k": 3.9},
+            {"alpha": 0.7, "eta": 1 + 1e-12, "k": 0.0},
+            {"alpha": 0.7, "eta": 1.0, "k": 0.0},
+            {"alpha": 0.05, "eta": 1e-6, "k": 1e6},
+        ),
+        wrong=(
+            out_of_range("alpha", 0, "[1e-4, 1]"),
+            out_of_range("alpha", -1, "[1e-4, 1]"),
+            out_of_range("eta", 0.0, "(0, inf)"),
+            out_of_range("k", -1.0, "[0, inf)"),
+            ({"eta": 1.5}, "k = None is not allowed: it must be given, as eta is: an index has both parts"),
+            ({"k": 1.5}, "eta = None is not allowed: it must be given, as k is: an index has both parts"),
+        ),
+        albedos=tuple(({"alpha": 1.0}, t, ggx_albedo(t)) for t in (0.0, 30.0, 60.0, 89.0, 89.9)),
+    ),
+)
+
+
+def missing(names: Iterable[str]) -> list[str]:
+    """Return what to do about each model that has no row."""
+    known = {row.name for row in ROWS}
+    return [
+        f"{name!r} has no row: add Row({name!r}, ...) to ROWS in {__file__}" for name in set(names) - known
+    ]
+
+
+def cases(*kinds: str) -> Any:
+    """Parametrise over all models and their parameter sets."""
+    found = [
+        pytest.param(row.name, parameters, id=f"{row.name}-{kind}{index}")
+        for row in ROWS
+        for kind in kinds
+        for index, parameters in enumerate(getattr(row, kind))
+    ]
+    return pytest.mark.parametrize(("name", "parameters"), found)
+
+
+models = pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
+
+
+def test_every_model_has_a_row():
+    own = [name for name in list_bsdfs() if type(bsdf(name)).__module__.startswith("radiokit.")]
+    assert own
+    assert missing(own) == []
+
+
+def test_a_model_without_a_row_would_be_noticed():
+    assert missing(["lambert", "velvet"])[0].startswith("'velvet' has no row: add Row('velvet', ...) to ROWS")
+
+
+# Kernel against twin
+
+ANGLES = np.radians([0.0, 1e-7, 30.0, 60.0, 89.0, 89.9999])
+
+
+def hard_pairs(f: Any, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """Return pairs above the horizon: normal, grazing, exact and nearly exact mirror pairs, random ones."""
+    width = f.lobe_width() or 1.0
+    found = []
+    for theta_o in ANGLES:
+        wo = spherical_to_cartesian(theta_o, 0.4)
+        found += [(spherical_to_cartesian(t, phi), wo) for t in ANGLES for phi in (0.4, 1.3, 0.4 + np.pi)]
+        found.append((reflect(wo), wo))
+        for slope in (0.1 * width, width, 10.0 * width):
+            for turn in (0.0, 2.0):
+                h = unit([slope * np.cos(turn), slope * np.sin(turn), 1.0])
+                found.append((reflect(wo, h), wo))
+    for _ in range(20):
+        found.append(tuple(unit(np.abs(v) * [rng.choice([-1, 1]), 1, 1]) for v in rng.normal(size=(2, 3))))
+    wi, wo = (np.array(side) for side in zip(*found, strict=True))
+    above = wi[:, 2] > 0
+    return wi[above], wo[above]
+
+
+def worst_ulps(kernel: Any, twin: Any, wi: np.ndarray, wo: np.ndarray) -> float:
+    exact = [twin.evaluate(*pair) for pair in zip(wi, wo, strict=True)]
+    condition = [twin.condition(*pair) for pair in zip(wi, wo, strict=True)]
+    return float(np.max(scaled_ulps(kernel(wi, wo), exact, condition)))
+
+
+@cases("ordinary", "hard")
+def test_the_kernel_agrees_with_its_twin(name, parameters, rng):
+    f = bsdf(name, **parameters)
+    assert worst_ulps(f.evaluate, f.symbolic(), *hard_pairs(f, rng)) <= 8
+
+
+def test_a_kernel_that_loses_digits_is_rejected(rng):
+    """Planted: GGX's D with (α² − 1) cos² + 1, the common form, at α = 1e-4."""
+    f = GGX(alpha=1e-4)
+
+    def common(wi, wo):
+        z = half_vector(wi, wo)[:, 2]
+        density = f.alpha**2 / (np.pi * ((f.alpha**2 - 1) * z * z + 1) ** 2)
+        good, _ = f._density(wi, wo, np.ones(len(wi), dtype=bool))
+        return f.evaluate(wi, wo) / good * density
+
+    assert worst_ulps(common, f.symbolic(), *hard_pairs(f, rng)) > 1e6
+
+
+@cases("ordinary")
+def test_reciprocity_is_proved_where_it_is_claimed(name, parameters):
+    f = bsdf(name, **parameters)
+    twin = f.symbolic()
+    proved = proved_zero(twin.swapped().expression - twin.expression)
+    assert proved == (f.claims.reciprocity == "yes")
+
+
+# Claims against findings
+
+
+@cases("ordinary", "hard")
+def test_what_is_found_is_what_is_claimed(name, parameters):
+    f = bsdf(name, **parameters)
+    wo = spherical_to_cartesian([0.3, 1.2], 0.7)
+    assert (len(f.delta_lobes(wo)) > 0) == f.claims.delta
+    if f.claims.delta:
+        assert not f.evaluate(reflect(wo), wo).any()
+    report = check(f, laws=["values", "reciprocity", "energy"])
+    assert report["values"].ok, report["values"]
+    assert report["reciprocity"].ok == (f.claims.reciprocity == "yes"), report["reciprocity"]
+    assert report["energy"].ok == f.claims.conserves, report["energy"]
+    assert report["energy"].details["lossless"] == f.claims.lossless, report["energy"]
+
+
+@models
+def test_albedos_are_those_of_the_closed_forms(row):
+    for parameters, theta_deg, exact in row.albedos:
+        found = directional_albedo(
+            bsdf(row.name, **parameters), spherical_to_cartesian(np.radians(theta_deg), 0.3)
+        )
+        assert abs(found.value - exact) <= found.error + 1e-15 <= 1e-8
+
+
+def test_phong_at_80_degrees_keeps_what_is_known():
+    wo = spherical_to_cartesian(np.radians(80.0), 0.0)
+    assert float(directional_albedo(bsdf("phong", exponent=10.0), wo)) == pytest.approx(0.228, abs=5e-4)
+
+
+# The edges of the domain
+
+
+@cases("ordinary", "hard")
+def test_every_direction_has_a_finite_value(name, parameters, rng):
+    f = bsdf(name, **parameters)
+    edge = np.array(
+        [[1.0, 0, 0], [-1, 0, 0], [0, 1, 0], [1, 0, 5e-324], [-1, 0, 1e-160], [0, 0, 1], [0, 0, -1]]
+    )
+    wi, wo = (np.repeat(edge, len(edge), axis=0), np.tile(edge, (len(edge), 1)))
+    some_i, some_o = hard_pairs(f, rng)
+    turned = some_i * [1, 1, -1]
+    wi, wo = (
+        np.concatenate([wi, some_i, turned, some_i]),
+        np.concatenate([wo, some_o, some_o, some_o * [1, 1, -1]]),
+    )
+    with np.errstate(all="raise", under="ignore"):
+        value, density = f.evaluate(wi, wo), f.pdf(wi, wo)
+        u = np.resize([[0, 0], [1 - 2**-53, 0.3], [0.5, 1 - 2**-53], [0.2, 0.9]], (len(wo), 2))
+        sampled, weight = f.sample(u, wo)
+    for found in (value, density, weight):
+        assert found.shape == (len(wo),)
+        assert np.isfinite(found).all()
+        assert (found >= 0).all()
+    below = (wi[:, 2] <= 0) | (wo[:, 2] <= 0)
+    assert not value[below].any()
+    assert not density[below].any()
+    assert not weight[(sampled[:, 2] <= 0) | (wo[:, 2] <= 0)].any()
+    np.testing.assert_allclose(np.linalg.norm(sampled, axis=1), 1.0, rtol=1e-14)
+
+
+@models
+def test_a_wrong_parameter_is_named(row):
+    assert row.wrong
+    for parameters, message in row.wrong:
+        with pytest.raises(ParameterError) as caught:
+            bsdf(row.name, **parameters)
+        assert str(caught.value) == message
+
+
+# The sampler
+
+SAMPLES = 1 << 15
+LEVEL = 1e-4  # chance that one right sampler of all is rejected
+POLAR = (0.0, 60.0, 89.9)
+
+
+def probes(wi: np.ndarray, wo: np.ndarray, width: float) -> np.ndarray:
+    """Return bounded, smooth functions of the half vector's slope, in units of the lobe's width (N, 6)."""
+    h = half_vector(wi, wo)
+    x, y = unit(wo * [1, 1, 0] + [1e-300, 0, 0])[..., :2].T
+    along, across = (h[:, 0] * x + h[:, 1] * y), (h[:, 1] * x - h[:, 0] * y)
+    scale = np.sqrt(along**2 + across**2 + (width * h[:, 2]) ** 2)
+    a, b = along / scale, across / scale
+    return np.stack([np.ones_like(a), a, b, a * a, b * b, a * b], axis=-1)
+
+
+def sampler_p_value(f: Any, theta_deg: float, rng: np.random.Generator) -> float:
+    """Return the least p-value of the samples' mean probes against their integrals under the pdf."""
+    wo = spherical_to_cartesian(np.radians(theta_deg), 0.4)
+    width = f.lobe_width() or 1.0
+    held = np.broadcast_to(wo, (SAMPLES, 3))
+    wi, _ = f.sample(rng.random((SAMPLES, 2)), held)
+    above = wi[:, 2] > 0
+    found = Moments.of(np.where(above[:, None], probes(wi, held, width), 0.0))
+
+    def integrand(w: np.ndarray) -> np.ndarray:
+        other = np.broadcast_to(wo, w.shape)
+        return f.pdf(w, other)[:, None] * probes(w, other, width)
+
+    exact = hemisphere(integrand, wo=wo, width=width, symmetric=False, rtol=1e-6, atol=1e-6)
+    assert np.all(exact.value[0] <= 1 + exact.error[0])
+    # What happens less often than a few times in all the samples may not be among them.
+    floor = exact.error + 3.0 / SAMPLES
+    estimate = Estimate(found.mean, np.hypot(found.standard_error, floor), "statistical")
+    return float(np.min(z_test(estimate, exact.value)))
+
+
+SMOOTH = [row for row in ROWS if not bsdf(row.name).claims.delta]
+TESTS = sum(len(row.ordinary + row.hard) for row in SMOOTH) * len(POLAR) * 6
+
+
+@pytest.mark.parametrize("theta_deg", POLAR)
+@cases("ordinary", "hard")
+def test_the_samples_follow_the_pdf(name, parameters, theta_deg, rng):
+    f = bsdf(name, **parameters)
+    if f.claims.delta:
+        wo = np.tile(spherical_to_cartesian(np.radians(theta_deg), 0.4), (4, 1))
+        wi, weight = f.sample(rng.random((4, 2)), wo)
+        np.testing.assert_array_equal(wi, f.delta_lobes(wo)[0].wi)
+        np.testing.assert_array_equal(weight, f.delta_lobes(wo)[0].weight)
+        return
+    assert sampler_p_value(f, theta_deg, rng) > sidak(LEVEL, TESTS)
+
+
+def test_a_sampler_that_is_off_is_rejected(rng):
+    """Planted: GGX sampled for a width a twentieth too large, and a radius that is not a square root."""
+
+    class Wide(GGX):
+        name = ""
+
+        def sample(self, u, wo):
+            return GGX(alpha=1.05 * self.alpha).sample(u, wo)
+
+    class Crowded(Lambert):
+        name = ""
+
+        def sample(self, u, wo):
+            return super().sample(u * [1.0, 0.98], wo)
+
+    assert sampler_p_value(Wide(alpha=0.3), 60.0, rng) < sidak(LEVEL, TESTS)
+    assert sampler_p_value(Wide(alpha=1e-4), 89.9, rng) < sidak(LEVEL, TESTS)
+    assert sampler_p_value(Crowded(), 60.0, rng) < sidak(LEVEL, TESTS)
+
+
+@cases("ordinary", "hard")
+def test_the_weight_is_value_times_cosine_over_density(name, parameters, rng):
+    f = bsdf(name, **parameters)
+    for theta_deg in POLAR:
+        wo = np.tile(spherical_to_cartesian(np.radians(theta_deg), 0.4), (2000, 1))
+        u = rng.random((2000, 2))
+        (wi, weight), again = f.sample(u, wo), f.sample(u, wo)
+        np.testing.assert_array_equal(wi, again[0])
+        np.testing.assert_array_equal(weight, again[1])
+        if not f.claims.delta:
+            live = weight > 0
+            density = f.pdf(wi[live], wo[live])
+            assert (density > 0).all()
+            said = f.evaluate(wi[live], wo[live]) * wi[live, 2] / density
+            np.testing.assert_allclose(weight[live], said, rtol=1e-14)
+
+
+@cases("ordinary")
+def test_the_judge_agrees_with_the_sampler(name, parameters):
+    count = sum(len(row.ordinary) for row in ROWS)
+    report = check(bsdf(name, **parameters), laws=["sampling"], tests=count)
+    assert report.ok, str(report)
+
+
+# The file
+
+
+@models
+def test_the_file_keeps_the_order_and_stands_alone(row):
+    model = type(bsdf(row.name))
+    module = inspect.getmodule(model)
+    assert module is not None
+    source = model.SOURCE
+    assert source is module.SOURCE
+    assert all((source.authors, source.year, source.title, source.equation))
+    order = [name for name in vars(model) if name in ("symbolic", "evaluate", "pdf", "sample", "claims")]
+    assert order == ["symbolic", "evaluate", "pdf", "sample", "claims"]
+    assert (module.__doc__ or "").count("\n") > 1, "say what the model is, and when to use it"
+    imports = [
+        node for node in ast.walk(ast.parse(inspect.getsource(module))) if isinstance(node, ast.ImportFrom)
+    ]
+    assert not [node.module for node in imports if (node.module or "").startswith("radiokit.bsdfs")]
+
+
+@cases("ordinary", "hard")
+def test_a_model_survives_a_process_boundary(name, parameters):
+    f = bsdf(name, **parameters)
+    assert pickle.loads(pickle.dumps(f)) == f
+    assert f.parameters().items() >= parameters.items()
+
+
+def test_the_mirror_twin_integrates_to_the_reflectance():
+    """∫ f cosθ dω over the plane x, y is ρ: what the delta lobe's weight says."""
+    import sympy
+
+    from radiokit.measure.twin import DIRECTION_SYMBOLS
+
+    f = bsdf("mirror", reflectance=0.3)
+    twin = f.symbolic()
+    x_i, y_i, *_ = DIRECTION_SYMBOLS
+    whole = sympy.integrate(twin.expression, (x_i, -sympy.oo, sympy.oo), (y_i, -sympy.oo, sympy.oo))
+    (rho,) = twin.parameters
+    assert whole == rho
+    assert f.delta_lobes(np.array([[0.6, 0.0, 0.8]]))[0].weight == twin.parameters[rho]
+
+
+def test_ggx_is_the_same_both_ways_to_the_last_bit(rng):
+    """It works on wi + wo and on sums that commute, so not even its rounding is asymmetric."""
+    f = GGX(alpha=0.2, eta=0.2, k=3.9)
+    wi, wo = hard_pairs(f, rng)
+    np.testing.assert_array_equal(f.evaluate(wi, wo), f.evaluate(wo, wi))
