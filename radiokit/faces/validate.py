@@ -13,11 +13,11 @@ from typing import Any
 from radiokit.checks.claims import claims
 from radiokit.checks.judge import check
 from radiokit.contracts.bsdf import REGISTRY, bsdf
+from radiokit.faces.workers import SerialExecutor
 from radiokit.facts.errors import RadiokitError
 from radiokit.facts.jsonable import jsonable
 from radiokit.facts.report import EXIT_CODES, Report
 from radiokit.facts.verdict import Evidence, Outcome, Verdict
-from radiokit.faces.workers import SerialExecutor
 from radiokit.measure.statistics import sidak
 from radiokit.worlds.cases.catalogue import case, list_cases
 

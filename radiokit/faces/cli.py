@@ -1,0 +1,284 @@
+"""The command line: ``radiokit validate``, ``check``, ``albedo``, ``cases`` and ``lobe``."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from radiokit.faces.console import fail, progress_bar, show_json, show_report, show_table, write
+from radiokit.facts.errors import RadiokitError
+
+__all__ = ["app", "main"]
+
+USAGE = 2
+INCONCLUSIVE = 3
+
+app = typer.Typer(
+    help="Radiometry for teaching, and an analytic validator of BSDFs and renderers.",
+    epilog="Exit codes: 0 all holds, 1 a violation, 2 bad usage or input, 3 inconclusive.",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+_OPEN = {"allow_extra_args": True, "ignore_unknown_options": True}
+
+Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+Target = Annotated[str, typer.Argument(help="A model's name, or file.py:function.", metavar="TARGET")]
+Theta = Annotated[float, typer.Option(help="Polar angle of wo, in degrees.")]
+Phi = Annotated[float, typer.Option(help="Azimuth of wo, in degrees.")]
+
+
+def _exit(code: int) -> None:
+    if code:
+        raise typer.Exit(code)
+
+
+def _load(target: str, context: typer.Context) -> Any:
+    from radiokit.faces.targets import load_target, parse_parameters
+
+    return load_target(target, parse_parameters(context.args))
+
+
+def _direction(theta: float, phi: float) -> Any:
+    import numpy as np
+
+    from radiokit.facts.directions import spherical_to_cartesian
+    from radiokit.facts.errors import ParameterError
+
+    if not 0 <= theta < 90:
+        raise ParameterError("theta", theta, "in [0, 90) degrees")
+    return spherical_to_cartesian(np.deg2rad(theta), np.deg2rad(phi))
+
+
+@app.command()
+def validate(
+    json: Json = False,
+    workers: Annotated[int | None, typer.Option(help="Local processes; all processors by default.")] = None,
+    scheduler: Annotated[str | None, typer.Option(help="Address of a Dask scheduler to use.")] = None,
+    seed: Annotated[int, typer.Option(help="Seed of the Monte Carlo methods.")] = 0,
+    figures: Annotated[Path, typer.Option(help="Folder of the work-precision diagram.")] = Path("figures"),
+    no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw nothing.")] = False,
+) -> None:
+    """Check every model, and every closed-form case by every method that applies."""
+    from radiokit.faces.validate import validate as run
+    from radiokit.faces.workers import available_workers, open_executor
+
+    count = available_workers() if workers is None else workers
+    with open_executor(count, scheduler) as executor, progress_bar("validating", not json) as progress:
+        found = run(executor=executor, workers=count, seed=seed, progress=progress)
+    drawn = None
+    if not no_figures:
+        from radiokit.faces.plots.work_precision import draw_work_precision
+
+        drawn = draw_work_precision(figures / "work-precision.png", seed=seed)
+    if json:
+        show_json(found.to_json() | {"figures": [] if drawn is None else [str(drawn)]})
+    else:
+        _show_validation(found)
+        if drawn is not None:
+            write(f"work-precision diagram: {drawn}")
+    _exit(found.exit_code)
+
+
+def _show_validation(found: Any) -> None:
+    from radiokit.faces.validate import MUST_HOLD
+
+    rows = []
+    for report in found.models:
+        values = ", ".join(
+            f"{name}={value:g}" for name, value in report.parameters.items() if value is not None
+        )
+        for verdict in report:
+            rows.append((report.subject, values, verdict.check, verdict.outcome, verdict.message))
+    show_table("models", ("model", "parameters", "check", "outcome", "finding"), rows)
+    show_table(
+        "closed-form cases",
+        ("case", "method", "value", "exact", "true error", "claimed", "evaluations", "ms", "outcome"),
+        [_case_cells(row) for row in found.cases],
+    )
+    worst = [
+        f"{r.subject} {v.check}: {v.message}"
+        for r in found.models
+        for v in r
+        if v.check in MUST_HOLD and not v.ok
+    ]
+    worst += [f"{r.case} by {r.method}: {r.verdict.message}" for r in found.cases if not r.verdict.ok]
+    for line in worst:
+        write(f"not as it should be: {line}")
+    write(
+        f"{found.outcome}: {len(found.models)} models, {len(found.cases)} answers to closed-form cases, "
+        f"{found.seconds:.1f} s with {found.workers} workers"
+    )
+
+
+def _case_cells(row: Any) -> tuple[Any, ...]:
+    estimate = row.verdict.estimate
+    if estimate is None:
+        return (row.case, row.method, "", f"{row.exact:.10g}", "", "", "", "", row.verdict.outcome)
+    kind = "≤" if estimate.is_bound else "σ"
+    return (
+        row.case,
+        row.method,
+        f"{float(estimate.value):.10g}",
+        f"{row.exact:.10g}",
+        f"{row.true_error:.1e}",
+        f"{kind} {float(estimate.error):.1e}",
+        estimate.evaluations,
+        f"{1e3 * estimate.seconds:.1f}",
+        row.verdict.outcome,
+    )
+
+
+@app.command(context_settings=_OPEN)
+def check(
+    context: typer.Context,
+    target: Target,
+    json: Json = False,
+    law: Annotated[list[str] | None, typer.Option(help="Only this law; may be repeated.")] = None,
+    tolerance: Annotated[float, typer.Option(help="How far beyond a limit a value may lie.")] = 1e-9,
+    seconds: Annotated[float, typer.Option(help="Time aimed at for a slow function.")] = 60.0,
+) -> None:
+    """Check a BSDF for reciprocity, energy conservation and more; its parameters go as --NAME VALUE."""
+    from radiokit.checks.judge import LAWS
+    from radiokit.checks.judge import check as judge
+
+    report = judge(_load(target, context), laws=law or LAWS, tolerance=tolerance, seconds=seconds)
+    if json:
+        show_json(report.to_json())
+    else:
+        show_report(report)
+    _exit(report.exit_code)
+
+
+@app.command(context_settings=_OPEN)
+def albedo(
+    context: typer.Context,
+    target: Target,
+    theta: Theta = 0.0,
+    phi: Phi = 0.0,
+    method: Annotated[str, typer.Option(help="quadrature or mc.")] = "quadrature",
+    rtol: Annotated[float, typer.Option(help="Relative error asked of the quadrature.")] = 1e-6,
+    samples: Annotated[int, typer.Option(help="Samples for Monte Carlo.")] = 1 << 20,
+    seed: Annotated[int | None, typer.Option(help="Seed for Monte Carlo.")] = None,
+    json: Json = False,
+) -> None:
+    """Print the directional albedo of a BSDF, with its error and its cost."""
+    from radiokit.contracts.albedo import albedo as integrate
+
+    f = _load(target, context)
+    wo = _direction(theta, phi)
+    found = integrate(f, wo, method=method, rtol=rtol, samples=samples, rng=seed)  # type: ignore[arg-type]
+    if json:
+        show_json({"target": target, "theta_deg": theta, "phi_deg": phi, **found.to_json()})
+    else:
+        write(f"albedo of {f!r} at θ = {theta:g}°: {found}")
+        write(f"  {found.method}, {found.evaluations} evaluations, {1e3 * found.seconds:.1f} ms")
+        if found.note:
+            write(f"  {found.note}")
+    _exit(0 if found.converged else INCONCLUSIVE)
+
+
+@app.command()
+def cases(
+    name: Annotated[str | None, typer.Argument(help="One case; without it, all are listed.")] = None,
+    run: Annotated[bool, typer.Option("--run", help="Answer by every method that applies.")] = False,
+    seed: Annotated[int, typer.Option(help="Seed of the Monte Carlo methods.")] = 0,
+    json: Json = False,
+) -> None:
+    """List the closed-form cases, or show one: its setup, its exact value, and where it comes from."""
+    from radiokit.faces.validate import CaseRow
+    from radiokit.worlds.cases.catalogue import case, list_cases
+
+    chosen = [case(name)] if name else [case(each) for each in list_cases()]
+    rows = [
+        CaseRow(each.name, method, each.exact, each.verdict(method, seed, level=1e-6))
+        for each in chosen
+        for method in (each.methods if run else ())
+    ]
+    if json:
+        answers = [row.to_json() for row in rows]
+        show_json({"cases": [each.to_json() for each in chosen], "answers": answers})
+    elif name:
+        _show_case(chosen[0])
+    else:
+        table = [(each.name, each.title, f"{each.exact:.12g}", ", ".join(each.methods)) for each in chosen]
+        show_table("closed-form cases", ("case", "title", "exact", "methods"), table)
+    if rows and not json:
+        columns = (
+            "case",
+            "method",
+            "value",
+            "exact",
+            "true error",
+            "claimed",
+            "evaluations",
+            "ms",
+            "outcome",
+        )
+        show_table("answers", columns, [_case_cells(row) for row in rows])
+    outcomes = {str(row.verdict.outcome) for row in rows}
+    _exit(1 if "violated" in outcomes else INCONCLUSIVE if "inconclusive" in outcomes else 0)
+
+
+def _show_case(each: Any) -> None:
+    write(f"{each.name}: {each.title}")
+    write(f"  setup: {each.setup}")
+    write(f"  exact: {each.exact!r} {each.unit}")
+    write(f"  derivation: {each.derivation}")
+    write(f"  source: {each.source.cite()}")
+    write(f"  methods: {', '.join(each.methods)}")
+
+
+@app.command(context_settings=_OPEN)
+def lobe(
+    context: typer.Context,
+    target: Target,
+    png: Annotated[Path, typer.Option(help="File to write.")] = Path("lobe.png"),
+    theta: Theta = 45.0,
+    phi: Phi = 0.0,
+    scale: Annotated[str, typer.Option(help="linear or log.")] = "linear",
+    json: Json = False,
+) -> None:
+    """Draw the lobe of a BSDF in three dimensions (needs the viz extra)."""
+    import numpy as np
+
+    from radiokit.faces.plots.lobe import save_lobe
+
+    f = _load(target, context)
+    _direction(theta, phi)
+    saved = save_lobe(f, theta=np.deg2rad(theta), phi=np.deg2rad(phi), png=png, scale=scale)
+    if json:
+        show_json({"target": target, "theta_deg": theta, "phi_deg": phi, "png": str(saved)})
+    else:
+        write(str(saved))
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run the command line; a user's mistake gives one line on standard error and exit code 2."""
+    words = sys.argv[1:] if arguments is None else arguments
+    try:
+        code = app(words, prog_name="radiokit", standalone_mode=False)
+    except typer.TyperException as error:
+        fail(error.format_message() if hasattr(error, "format_message") else str(error))
+        code = USAGE
+    except RadiokitError as error:
+        if "--json" in words:
+            show_json(error.to_json())
+        fail(str(error))
+        code = USAGE
+    except (typer.Abort, KeyboardInterrupt):
+        code = 130
+    except BrokenPipeError:  # the reader of our output has gone
+        sys.stderr.close()
+        code = 0
+    sys.exit(code if isinstance(code, int) else 0)
+
+
+if __name__ == "__main__":
+    main()

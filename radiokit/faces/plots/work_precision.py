@@ -1,0 +1,133 @@
+"""Work-precision diagram: error against time, one line for each method, on the furnace of a rough metal."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from radiokit.contracts.albedo import integrand
+from radiokit.contracts.bsdf import BSDF
+from radiokit.measure.slope import gauss_legendre, slope_rule
+from radiokit.worlds.cases.catalogue import Case, case
+
+__all__ = ["FURNACE", "Line", "draw_work_precision", "work_precision"]
+
+FURNACE = "ggx-0.3-in-furnace-at-60deg"
+SIZES = (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256)
+SAMPLES = tuple(4**k for k in range(3, 10))
+SEEDS = 8
+REPEATS = 3
+FLOOR = 1e-16
+
+
+@dataclass(frozen=True)
+class Line:
+    """One method: its relative true error at each of several costs, and what it claimed where it claims."""
+
+    method: str
+    seconds: list[float]
+    evaluations: list[int]
+    error: list[float]
+    claimed: list[float] | None = None
+
+
+def work_precision(name: str = FURNACE, *, seed: int = 0) -> list[Line]:
+    """Measure every method on one furnace case, at rising cost.
+
+    Quadrature errors are those of one run; Monte Carlo errors are the root mean square over eight seeds,
+    beside the mean standard error that was claimed. Times are the best of three.
+    """
+    furnace = case(name)
+    scene: Any = furnace.scene
+    f, wo = scene.f, np.asarray(scene.wo)
+    lines = [
+        _rule("slope-space rule", lambda n: _slope(f, wo, n), furnace.exact),
+        _rule("Gauss-Legendre in cosθ × φ", lambda n: _classroom(f, wo, n), furnace.exact),
+    ]
+    for label, method in (
+        ("Monte Carlo, BSDF-sampled", "mc-bsdf"),
+        ("Monte Carlo, light-sampled", "mc-light"),
+        ("balance heuristic", "mis"),
+    ):
+        if method in furnace.methods:
+            lines.append(_sampled(label, furnace, method, seed))
+    return lines
+
+
+def draw_work_precision(path: Path, *, name: str = FURNACE, seed: int = 0) -> Path:
+    """Draw the diagram into ``path``, whose folder is made when it is missing."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    furnace = case(name)
+    figure = Figure(figsize=(8.0, 5.2), dpi=150, layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.add_subplot()
+    styles = (("#0b6e4f", "o"), ("#999999", "s"), ("#1f5fbf", "^"), ("#c8553d", "v"), ("#8e44ad", "D"))
+    for line, (colour, marker) in zip(work_precision(name, seed=seed), styles, strict=False):
+        error = np.maximum(line.error, FLOOR)
+        axes.loglog(
+            np.multiply(1e3, line.seconds), error, marker=marker, ms=4, color=colour, label=line.method
+        )
+        if line.claimed is not None:
+            claimed = np.maximum(line.claimed, FLOOR)
+            axes.loglog(np.multiply(1e3, line.seconds), claimed, ls=":", lw=1.2, color=colour)
+    axes.axhline(np.finfo(float).eps, color="black", lw=0.6, ls="--")
+    axes.text(
+        0.995, 1.3 * np.finfo(float).eps, "float64", transform=axes.get_yaxis_transform(), ha="right", size=8
+    )
+    axes.set_xlabel("time [ms]")
+    axes.set_ylabel("relative error")
+    axes.set_title(
+        f"{furnace.title}: error against time\n(dotted: the standard error that was claimed)", size=10
+    )
+    axes.grid(which="major", lw=0.3)
+    axes.legend(fontsize=8, loc="lower left")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path)
+    return path
+
+
+def _rule(label: str, rule: Callable[[int], float], exact: float) -> Line:
+    seconds, error = [], []
+    for n in SIZES:
+        best = np.inf
+        for _ in range(REPEATS):
+            start = time.perf_counter()
+            value = rule(n)
+            best = min(best, time.perf_counter() - start)
+        seconds.append(float(best))
+        error.append(abs(value / exact - 1))
+    return Line(label, seconds, [n * n for n in SIZES], error)
+
+
+def _slope(f: BSDF, wo: Any, n: int) -> float:
+    wi, weight = slope_rule(wo, f.lobe_width() or 1.0, n, symmetric=True)
+    return float(weight @ integrand(f, wo, "wo")(wi))
+
+
+def _classroom(f: BSDF, wo: Any, n: int) -> float:
+    x, w = gauss_legendre(n)
+    phi = 2 * np.pi * x
+    sine = np.sqrt((1 - x) * (1 + x))
+    wi = np.stack(
+        [np.outer(sine, np.cos(phi)), np.outer(sine, np.sin(phi)), np.repeat(x[:, None], n, axis=1)], axis=-1
+    ).reshape(-1, 3)
+    return float(2 * np.pi * np.outer(w, w).ravel() @ integrand(f, wo, "wo")(wi))
+
+
+def _sampled(label: str, furnace: Case, method: str, seed: int) -> Line:
+    seconds, evaluations, error, claimed = [], [], [], []
+    for samples in SAMPLES:
+        runs = [furnace.run(method, seed + k, samples=samples) for k in range(SEEDS)]
+        off = np.array([run.value - furnace.exact for run in runs]) / furnace.exact
+        seconds.append(float(np.min([run.seconds for run in runs])))
+        evaluations.append(runs[0].evaluations)
+        error.append(float(np.sqrt(np.mean(off**2))))
+        claimed.append(float(np.sqrt(np.mean([run.error**2 for run in runs])) / furnace.exact))
+    return Line(label, seconds, evaluations, error, claimed)
