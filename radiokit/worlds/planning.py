@@ -11,12 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from radiokit.contracts.blackbox import as_bsdf
-from radiokit.contracts.bsdf import BSDF
 from radiokit.contracts.emitter import Emitter
 from radiokit.facts.directions import check_directions
 from radiokit.facts.errors import ParameterError, RadiokitError, UnknownNameError
 from radiokit.worlds.scene import Receiver, check_emitter
-from radiokit.worlds.terms import DELTA_LIGHT, DELTA_LOBES, MAX_SAMPLES, SMOOTH, Part, Term
+from radiokit.worlds.terms import DELTA_LIGHT, DELTA_LOBES, MAX_SAMPLES, SMOOTH, Term
 
 __all__ = ["METHODS", "Plan", "Row", "check_direction", "make_plan"]
 
@@ -122,7 +121,9 @@ def make_plan(
     lights: Sequence[Any] = [emitters] if isinstance(emitters, Emitter) else list(emitters)
     terms: list[Term] = []
     for light in map(check_emitter, lights):
-        terms += [Term(model, light, receiver, local, part) for part in _parts(model, light, local)]
+        parts = (DELTA_LIGHT,) if light.delta else (DELTA_LOBES, SMOOTH)
+        found = [Term(model, light, receiver, local, part) for part in parts]
+        terms += [term for term in found if term.exists]
     rows = [_row(term, method, rtol, samples) for term in terms]
     if method not in ("auto", "sum") and rows and all(row.method == "sum" for row in rows):
         usable = "'auto' or 'sum'"
@@ -133,23 +134,6 @@ def make_plan(
             method=method,
         )
     return Plan(repr(model), rtol, tuple(rows))
-
-
-def _parts(f: BSDF, light: Emitter, wo: FloatArray) -> list[Part]:
-    """Return the products that one light and one material make."""
-    if light.delta:
-        return [DELTA_LIGHT]
-    parts: list[Part] = []
-    if f.delta_lobes(wo[None, :]):
-        parts.append(DELTA_LOBES)
-    if not _only_delta(f):
-        parts.append(SMOOTH)
-    return parts or [DELTA_LOBES]
-
-
-def _only_delta(f: BSDF) -> bool:
-    claims: Any = f.claims
-    return claims is not None and claims.delta
 
 
 def _row(term: Term, method: str, rtol: float, samples: int | None) -> Row:
@@ -201,7 +185,7 @@ def _name(term: Term) -> str:
 def _why(term: Term, method: str) -> str:
     if method == "sum":
         if term.part == DELTA_LIGHT:
-            if _only_delta(term.f):
+            if term.only_delta:
                 return "a delta light on delta lobes only is a pair of measure zero, which adds 0"
             return "the light arrives from single directions: the integral is a sum"
         if term.part == DELTA_LOBES:
@@ -232,7 +216,7 @@ def _why_not(method: str) -> str:
 def _cost(term: Term, method: str, rtol: float, samples: int | None) -> int:
     """Predict the evaluations of the material, in order of magnitude."""
     if method == "sum":
-        if term.part == DELTA_LIGHT and not _only_delta(term.f):
+        if term.part == DELTA_LIGHT and not term.only_delta:
             return len(term.light.incident(term.receiver.origin)[0])
         return len(term.lobes) if term.part == DELTA_LOBES else 0
     if method == "closed form":

@@ -68,6 +68,19 @@ class Term:
         return np.concatenate(found) if found else np.zeros((0, 3))
 
     @cached_property
+    def only_delta(self) -> bool:
+        """Whether the material has nothing but delta lobes."""
+        claims: Any = self.f.claims  # None for a stranger's function
+        return claims is not None and bool(claims.delta)
+
+    @property
+    def exists(self) -> bool:
+        """Whether the light and the material make such a product at all."""
+        if self.part == DELTA_LOBES:
+            return self.only_delta or len(self.lobes) > 0
+        return self.part == DELTA_LIGHT or not self.only_delta
+
+    @cached_property
     def shape(self) -> tuple[int, ...]:
         """The shape of one value: () for one wavelength, (K,) for K of them."""
         up = np.array([[0.0, 0.0, 1.0]])
@@ -92,6 +105,8 @@ class Term:
                 total = total + _times(lobe.weight, radiance)[0]
             seconds = time.perf_counter() - start
             return Estimate(total, 8 * _EPS * np.abs(total), "rounding", len(lobes), seconds, "sum")
+        if self.only_delta:
+            return self.zero("a delta light on a delta lobe is a pair of measure zero")
         directions, normal_irradiance = self.light.incident(self.receiver.origin)
         wi = self.receiver.to_local(directions)
         above = wi[:, 2] > 0
@@ -159,7 +174,7 @@ class Term:
         )
         if np.any(missed):
             note = f"a lattice over light and lobe finds {guard}: the rules missed a narrow lobe"
-            return replace(found, error=found.error + gap + 8 * spread, converged=False, note=note)
+            return replace(found, error=found.error + 2 * gap + 8 * spread, converged=False, note=note)
         return found
 
     # --- Monte Carlo ---
