@@ -34,8 +34,8 @@ class Row:
     """What the suite has to know of one model.
 
     ``ordinary`` and ``hard`` are parameter sets: all meet the tests of kernel, claims, edges and sampler, and
-    the ordinary ones the judge's statistics too. ``wrong`` pairs parameters with the message they must raise. ``albedos`` are closed forms:
-    parameters, polar angle in degrees, exact directional albedo.
+    the ordinary ones the judge's statistics too. ``wrong`` pairs parameters with the message they must raise.
+    ``albedos`` are closed forms: parameters, polar angle in degrees, exact directional albedo.
     """
 
     name: str
