@@ -38,6 +38,9 @@ def shade(
     delta lobe is a pair of measure zero and adds 0. The rest goes by ``method``; ``explain`` tells which one
     ``auto`` takes and why.
 
+    Only delta lobes reach below the horizon, and see there the basic radiance L/n²; the smooth part of a
+    material is taken to reflect.
+
     Parameters
     ----------
     f : BSDF or callable

@@ -101,8 +101,10 @@ class Case:
     tags: tuple[str, ...] = ()
     scene: Scene | None = field(default=None, repr=False)
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        return (case, (self.name,))
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        if _catalogue().get(self.name) is self:
+            return (case, (self.name,))
+        return super().__reduce_ex__(protocol)
 
     def run(
         self,

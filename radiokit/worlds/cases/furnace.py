@@ -34,15 +34,14 @@ def phong_albedo(exponent: int, theta_deg: float) -> float:
     >>> round(phong_albedo(10, 0.0), 15), round(phong_albedo(10, 80.0), 3)
     (1.0, 0.228)
     """
-    n, beta = exponent, math.radians(theta_deg)
-    half = n // 2
-    # ∫ cosᵐλ dλ over [−π/2, π/2] = π (m−1)!!/m!! for even m = n + 2.
-    latitude = math.pi * math.prod((2 * k - 1) / (2 * k) for k in range(1, half + 2))
-    # ∫ cosⁿ⁺¹χ dχ over [−π/2, π/2 − β], by s = sinχ and the binomial of (1 − s²)ⁿᐟ².
-    terms = [math.comb(half, k) * (-1) ** k / (2 * k + 1) for k in range(half + 1)]
-    odd = math.fsum(term * (math.cos(beta) ** (2 * k + 1) + 1.0) for k, term in enumerate(terms))
-    longitude = math.cos(beta) * odd + math.sin(beta) ** (n + 2) / (n + 1)
-    return (n + 2) / (2 * math.pi) * latitude * longitude
+    n, half, beta = exponent, exponent // 2, math.radians(theta_deg)
+    # ∫ cosⁿ⁺²λ dλ over [−π/2, π/2] is π times the central binomial coefficient over 2ⁿ⁺²; π cancels.
+    latitude = (n + 2) / 2 * math.comb(n + 2, half + 1) / 4 ** (half + 1)
+    # ∫ cosᵐχ dχ over [−π/2, π/2 − β] from m = 1 up to n + 1, by parts: every term is positive.
+    odd = 1.0 + math.cos(beta)
+    for m in range(3, n + 2, 2):
+        odd = (math.sin(beta) ** (m - 1) * math.cos(beta) + (m - 1) * odd) / m
+    return latitude * (math.cos(beta) * odd + math.sin(beta) ** (n + 2) / (n + 1))
 
 
 _PHONG_DERIVATION = (

@@ -49,7 +49,16 @@ def _case(
 
 def _at(theta_deg: float, azimuth: float = 1.0) -> tuple[float, float, float]:
     """Return the direction ``theta_deg`` off z, with a cosine that keeps its digits near the horizon."""
-    return (azimuth * math.cos(math.radians(90 - theta_deg)), 0.0, math.sin(math.radians(90 - theta_deg)))
+    return (azimuth * math.sin(math.radians(theta_deg)), 0.0, _cosine_of(theta_deg))
+
+
+def _cosine_of(theta_deg: float) -> float:
+    return math.sin(math.radians(round(90 - theta_deg, 9)))  # of 0.001°, and not 0.00100000000000477°
+
+
+def _peak(alpha: float, theta_deg: float) -> float:
+    root = math.hypot(_cosine_of(theta_deg), alpha * math.sin(math.radians(theta_deg)))
+    return 2.0 / (4 * math.pi * alpha**2 * root)
 
 
 def _inverse_square(text: str, distance: float) -> Case:
@@ -71,7 +80,7 @@ def _cosine(theta_deg: float) -> Case:
         f"Lambert under parallel light at {theta_deg:g}°",
         "A diffuse surface of reflectance 0.5 under parallel light of 1000 W/m² normal irradiance, "
         f"{theta_deg:g}° off the normal.",
-        500 / math.pi * max(0.0, math.sin(math.radians(90 - theta_deg))),
+        500 / math.pi * max(0.0, _cosine_of(theta_deg)),
         r"$f = \rho/\pi$, and $\cos\theta = \sin(90° - \theta)$ keeps its digits near the horizon, "
         "below which the light does not count.",
         Lambert(reflectance=0.5),
@@ -116,7 +125,8 @@ CASES: tuple[Case, ...] = (
             f"GGX, α = {alpha:g}, at the peak of the highlight of a light at {theta}°",
             f"GGX with α = {alpha:g}, height-correlated Smith masking and Fresnel factor 1, under parallel "
             f"light of 2 W/m² normal irradiance {theta}° off the normal, seen in the mirror direction.",
-            2 / (4 * math.pi * alpha**2 * math.hypot(math.cos(math.radians(theta)), alpha * _at(theta)[0])),
+            2
+            / (4 * math.pi * alpha**2 * math.hypot(_cosine_of(theta), alpha * math.sin(math.radians(theta)))),
             r"$h = n$, so $D = 1/(\pi\alpha^2)$, $G_2 = 1/\sqrt{1 + \alpha^2\tan^2\theta}$, and "
             r"$L_o = E_\perp/(4\pi\alpha^2 \sqrt{\cos^2\theta + \alpha^2\sin^2\theta})$.",
             GGX(alpha=alpha),

@@ -31,7 +31,7 @@ _SAMPLED = ("mc-bsdf", "mc-light", "mis")
 
 def _tilted(tilt_deg: float) -> Case:
     # From the nearer pole, so that a surface that all but faces the ground keeps its digits.
-    rest = math.radians(180 - tilt_deg)
+    rest = math.radians(round(180 - tilt_deg, 9))  # 0.1°, and not 0.0999999999999943°
     normal = (math.sin(rest), 0.0, -math.cos(rest)) if tilt_deg > 90 else _towards(tilt_deg)
     half = math.sin(rest / 2) if tilt_deg > 90 else math.cos(math.radians(tilt_deg) / 2)
     sliver = 179 < tilt_deg < 180

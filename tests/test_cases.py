@@ -1,0 +1,341 @@
+"""Cases: every exact value again at 50 digits, every method on every case, and faults that must be found."""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+import json
+import math
+import pickle
+
+import mpmath
+import numpy as np
+import pytest
+from mpmath import mpf
+
+from radiokit.facts.errors import UnknownNameError
+from radiokit.facts.estimate import Estimate
+from radiokit.facts.verdict import Evidence, Outcome
+from radiokit.measure.statistics import sidak
+from radiokit.measure.twin import ulps
+from radiokit.worlds.cases.catalogue import case, list_cases
+from radiokit.worlds.shading import shade
+
+CASES = [case(name) for name in list_cases()]
+PAIRS = [(item, method) for item in CASES for method in item.methods]
+LEVEL = sidak(1e-3, len(PAIRS))
+
+
+# --- the exact values, again ---
+
+
+def deg(x):
+    return mpmath.radians(mpf(x))
+
+
+def phong(n, theta_deg):
+    """∫ (n + 2)/2π cosⁿα cosθ dω in rings about the mirror direction, each clipped by the horizon."""
+    tilt = deg(theta_deg)
+
+    def ring(a):
+        p, q = mpmath.cos(tilt) * mpmath.cos(a), mpmath.sin(tilt) * mpmath.sin(a)
+        if p >= q or q == 0:
+            return 2 * mpmath.pi * p
+        edge = mpmath.acos(-p / q)
+        return 2 * (p * edge + q * mpmath.sin(edge))
+
+    bends = [0, mpmath.pi / 2 - tilt, mpmath.pi / 2] if tilt else [0, mpmath.pi / 2]
+    return (
+        (n + 2) / (2 * mpmath.pi) * mpmath.quad(lambda a: mpmath.cos(a) ** n * ring(a) * mpmath.sin(a), bends)
+    )
+
+
+def ggx_one(theta_deg):
+    """∫ μi/(μi + μo) dμi, by quadrature of the Lommel–Seeliger form."""
+    mu = mpmath.cos(deg(theta_deg))
+    return mpmath.quad(lambda x: x / (x + mu), [0, 0.1, 1])
+
+
+def gauss(n):
+    """Gauss–Legendre on [0, 1] by Newton's method, in the working precision."""
+    for k in range(n):
+        x = mpmath.cos(mpmath.pi * (k + mpf(3) / 4) / (n + mpf(1) / 2))
+        for _ in range(8):
+            before, now = mpf(1), x
+            for j in range(2, n + 1):
+                before, now = now, ((2 * j - 1) * x * now - (j - 1) * before) / j
+            slope = n * (x * now - before) / (x * x - 1)
+            x -= now / slope
+        yield (1 + x) / 2, 1 / ((1 - x * x) * slope * slope)
+
+
+def ggx_by_slope(alpha, theta_deg, n):
+    """Albedo of GGX in the slope of the half vector, ρ(cosφ, sinφ), up to the horizon ρ = e^y.
+
+    E = ∫ α²/π(α² + ρ²)² · G₂ · (1 + ρ sinh y) ρ dρ dφ, with sinh y = tanθo cosφ.
+    """
+    a, theta = mpf(alpha), deg(theta_deg)
+    tan_o, cos_o = mpmath.tan(theta), mpmath.cos(theta)
+    reach = mpmath.asinh(tan_o)
+    lambda_o = (mpmath.sqrt(1 + a * a * tan_o**2) - 1) / 2
+    nodes = list(gauss(n))
+    total = mpf(0)
+    for k in range(n):
+        s = mpmath.pi * (k + mpf(1) / 2) / n
+        y = reach * mpmath.cos(s)
+        rise, edge = mpmath.sinh(y), mpmath.exp(y)
+        turn = reach * mpmath.cosh(y) * mpmath.sin(s) / mpmath.sqrt(tan_o**2 - rise**2)  # dφ/ds
+        length = mpmath.asinh(edge / a)
+        for x, w in nodes:
+            t = length * x * (2 - x)
+            rho = a * mpmath.sinh(t)
+            mu = cos_o * (edge - rho) * (rho + 1 / edge) / (1 + rho * rho)
+            lambda_i = (mpmath.sqrt(1 + a * a * (1 / mu**2 - 1)) - 1) / 2
+            value = rho * (1 + rho * rise) / (a * a + rho * rho) ** 2 / (1 + lambda_o + lambda_i)
+            total += w * value * turn * a * mpmath.cosh(t) * length * 2 * (1 - x)
+    return total * a * a * 2 / n
+
+
+def ggx_by_angle(alpha, theta_deg, n):
+    """The same albedo in the angles of the incident direction: other coordinates, other rule."""
+    a, theta = mpf(alpha), deg(theta_deg)
+    cos_o, sin_o = mpmath.cos(theta), mpmath.sin(theta)
+    lambda_o = (mpmath.sqrt(1 + (a * sin_o / cos_o) ** 2) - 1) / 2
+    ring = [mpmath.cos(mpmath.pi * (k + mpf(1) / 2) / n) for k in range(n)]
+    total = mpf(0)
+    for x, w in gauss(n):
+        c, s = mpmath.cos(x * mpmath.pi / 2), mpmath.sin(x * mpmath.pi / 2)
+        lambda_i = (mpmath.sqrt(1 + (a * s / c) ** 2) - 1) / 2
+        inner = mpf(0)
+        for cosine in ring:
+            up = (cos_o + c) ** 2 / (2 + 2 * (sin_o * s * cosine + cos_o * c))
+            inner += 1 / ((1 - up) + a * a * up) ** 2
+        total += w * inner * s / (1 + lambda_o + lambda_i)
+    return total * mpmath.pi * a * a / (4 * n * cos_o)
+
+
+def sky(tilt_deg):
+    """ρ/π times the integral over longitude and latitude of the lune that both horizons bound."""
+    latitude = mpmath.quad(lambda x: mpmath.cos(x) ** 2, [-mpmath.pi / 2, mpmath.pi / 2])
+    return latitude * (1 - mpmath.sin(deg(tilt_deg) - mpmath.pi / 2)) / (2 * mpmath.pi)
+
+
+def series(reflectance):
+    """Σ ρᵏ for the binary number that the float is."""
+    return mpmath.nsum(lambda k: mpf(reflectance) ** k, [0, mpmath.inf])
+
+
+def highlight(alpha, theta_deg):
+    """f cosθ E⊥ at the mirror pair, factor by factor from the model's definition."""
+    a, theta = mpf(alpha), deg(theta_deg)
+    density = 1 / (mpmath.pi * a * a)
+    masking = (mpmath.sqrt(1 + (a * mpmath.tan(theta)) ** 2) - 1) / 2
+    shadowed = 1 / (1 + 2 * masking)
+    return density * shadowed / (4 * mpmath.cos(theta) ** 2) * 2 * mpmath.cos(theta)
+
+
+EXACT = {
+    "lambert-in-furnace": lambda: mpf(1) / 2,
+    "mirror-in-furnace": lambda: mpf(0.9),
+    **{f"phong-10-in-furnace-at-{t}deg": lambda t=t: phong(10, t) for t in (0, 30, 60, 80)},
+    **{f"ggx-1-in-furnace-at-{t}deg": lambda t=t: ggx_one(t) for t in (0, 30, 60, 80, 89)},
+    "lambert-under-irradiance-pi": lambda: 2 * mpmath.quad(lambda mu: mu, [0, 1]),
+    **{
+        f"lambert-under-sky-tilted-{t}deg": lambda t=t: sky(t)
+        for t in ("0", "30", "60", "90", "120", "150", "179.9", "180")
+    },
+    **{
+        f"lambert-under-point-at-{text}": lambda r=r: mpf(0.5) / mpmath.pi * 3 / mpf(r) ** 2
+        for text, r in (("1mm", 1e-3), ("1m", 1.0), ("50m", 50.0), ("1000km", 1e6))
+    },
+    **{
+        f"lambert-under-sun-at-{t}deg": lambda t=t: max(mpf(0), 500 / mpmath.pi * mpmath.cos(deg(t)))
+        for t in ("0", "60", "89.999", "90.001", "180")
+    },
+    "lambert-under-three-lights": lambda: (
+        mpf("0.6") / mpmath.pi * (mpf(8) / 25 * mpf("0.8") + 2 * mpf("0.6"))
+    ),
+    "ggx-1-under-point": lambda: mpf(8) / 25 * mpf("0.8") / (2 * mpmath.pi * mpf("1.6")),
+    **{f"ggx-{a}-highlight-at-{t}deg": lambda a=a, t=t: highlight(a, t)
+       for a, t in (("0.3", 60), ("0.01", 45), ("0.1", 89))},
+    **{f"lambert-enclosure-{r}": lambda r=r: series(float(r)) for r in ("0.1", "0.5", "0.9")},
+}  # fmt: skip
+NUMERIC = {
+    "ggx-0.3-in-furnace-at-60deg": ("0.3", 60, 40),
+    "ggx-0.05-in-furnace-at-89deg": ("0.05", 89, 70),
+}
+
+
+def test_every_case_is_derived_again():
+    assert {item.name for item in CASES} == EXACT.keys() | NUMERIC.keys()
+
+
+@pytest.mark.parametrize("name", sorted(EXACT))
+def test_exact_values_at_50_digits(name):
+    with mpmath.workdps(50):
+        truth = EXACT[name]()
+        if abs(truth) < mpf(10) ** -45:
+            assert case(name).exact == 0.0
+        else:
+            assert ulps(case(name).exact, truth) <= 4
+
+
+@pytest.mark.parametrize("name", sorted(NUMERIC))
+def test_integrated_values_at_20_digits(name):
+    """The numbers of the microfacet cases, from the model's definition; this is how they were found."""
+    alpha, theta_deg, n = NUMERIC[name]
+    with mpmath.workdps(24):
+        truth = ggx_by_slope(alpha, theta_deg, n)
+        assert ulps(case(name).exact, truth) <= 1
+        digits = case(name).derivation.rsplit("0.", 1)[1].rstrip(".")
+        assert abs(truth - mpf("0." + digits)) < mpf(10) ** -18
+
+
+def test_two_coordinates_give_one_albedo():
+    with mpmath.workdps(24):
+        assert abs(ggx_by_angle(0.3, 60, 90) - ggx_by_slope(0.3, 60, 40)) < mpf(10) ** -16
+        mu = mpf(1) / 2
+        assert abs(ggx_by_slope(1, 60, 30) - (1 - mu * mpmath.log((1 + mu) / mu))) < mpf(10) ** -18
+
+
+# --- every method on every case ---
+
+
+@pytest.mark.parametrize(("item", "method"), PAIRS, ids=lambda x: getattr(x, "name", x))
+def test_every_method_finds_the_exact_value(item, method, seed):
+    verdict = item.verdict(method, seed, samples=60_000, level=LEVEL)
+    assert verdict.outcome is Outcome.HOLDS, str(verdict)
+    assert verdict.estimate.converged
+    assert verdict.evidence is (Evidence.BOUNDED if verdict.estimate.is_bound else Evidence.MEASURED)
+    if method == "quadrature":
+        assert verdict.estimate.error <= 1e-8 * max(item.exact, 1e-300) or item.exact == 0.0
+    json.dumps(verdict.to_json(), allow_nan=False)
+
+
+@pytest.mark.parametrize("item", CASES, ids=lambda x: x.name)
+def test_a_case_is_complete(item):
+    assert item.methods
+    assert item.run().converged  # by its first, best method
+    assert pickle.loads(pickle.dumps(item)) is item
+    assert item.unit == "W/m^2/sr"
+    for text in (item.title, item.setup, item.derivation, item.source.title, item.tags):
+        assert text
+    assert item.derivation.count("$") % 2 == 0
+    assert item.derivation.count("{") == item.derivation.count("}")
+    data = json.loads(json.dumps(item.to_json(), allow_nan=False))
+    assert data["methods"] == list(item.methods)
+    for text in (str(item), item._repr_markdown_()):
+        assert item.name in text
+        assert repr(item.exact) in text
+    if item.scene is not None:
+        auto = shade(
+            item.scene.f,
+            item.scene.emitters,
+            item.scene.wo,
+            normal=item.scene.normal,
+            position=item.scene.position,
+        )
+        assert auto.converged
+        assert auto.is_bound
+        assert item.judge(auto).ok
+
+
+def test_names_and_methods_are_looked_up():
+    assert list_cases() == sorted(list_cases())
+    with pytest.raises(UnknownNameError, match="did you mean 'lambert-in-furnace'"):
+        case("lambert-in-furnac")
+    with pytest.raises(UnknownNameError, match="Known: closed form, mc-bsdf, mc-light, mis, quadrature"):
+        case("lambert-in-furnace").run("sum")
+
+
+def test_a_case_of_ones_own_survives_a_process_boundary():
+    mine = dataclasses.replace(case("mirror-in-furnace"), name="mine")
+    again = pickle.loads(pickle.dumps(mine))
+    assert (again.name, again.exact, again.run().value) == ("mine", 0.9, 0.9)
+
+
+def test_the_same_seed_gives_the_same_answer(seed):
+    item = case("ggx-0.3-in-furnace-at-60deg")
+    assert item.run("mis", seed, samples=1000).value == item.run("mis", seed, samples=1000).value
+
+
+# --- what a judge must find ---
+
+
+def student(item, rng, n=40_000, *, cosine=True, density=1 / (2 * np.pi)):
+    """Another renderer: uniform samples of the hemisphere, written without radiokit's integrators."""
+    height, turn = rng.random(n), 2 * np.pi * rng.random(n)
+    radius = np.sqrt(1 - height**2)
+    wi = np.stack([radius * np.cos(turn), radius * np.sin(turn), height], axis=-1)
+    (light,) = item.scene.emitters
+    values = item.scene.f(wi, np.array(item.scene.wo)) * light.radiance / density
+    values = values * height if cosine else values
+    return Estimate(values.mean(), values.std(ddof=1) / math.sqrt(n), "statistical", n, method="student")
+
+
+FURNACES = ["lambert-in-furnace", "phong-10-in-furnace-at-60deg", "ggx-1-in-furnace-at-80deg"]
+PLANTED_LEVEL = sidak(1e-3, len(FURNACES))
+
+
+@pytest.mark.parametrize("name", FURNACES)
+def test_a_right_renderer_is_accepted(name, rng):
+    assert case(name).judge(student(case(name), rng), level=PLANTED_LEVEL).ok
+
+
+@pytest.mark.parametrize(("name", "fault"), list(itertools.product(FURNACES, ["cosine", "density", "scale"])))
+def test_a_planted_wrong_renderer_is_rejected(name, fault, rng):
+    item = case(name)
+    wrong = {
+        "cosine": lambda: student(item, rng, cosine=False),
+        "density": lambda: student(item, rng, density=1 / np.pi),
+        "scale": lambda: student(item, rng).scaled(1.1),
+    }[fault]()
+    verdict = item.judge(wrong, level=PLANTED_LEVEL)
+    assert verdict.outcome is Outcome.VIOLATED
+    assert verdict.evidence is Evidence.REFUTED
+    assert verdict.p_value < PLANTED_LEVEL
+    assert verdict.witness.values["exact"] == item.exact
+    assert verdict.witness.directions["wo"] == item.scene.wo
+
+
+JUDGED = [
+    (Estimate(0.5, 0.0, "rounding"), Outcome.HOLDS),
+    (Estimate(0.5 + 1e-16, 0.0, "rounding"), Outcome.HOLDS),
+    (Estimate(0.501, 0.002, "truncation"), Outcome.HOLDS),
+    (Estimate(0.501, 0.0005, "truncation"), Outcome.VIOLATED),
+    (Estimate(0.501, 0.0005, "truncation", converged=False), Outcome.VIOLATED),
+    (Estimate(0.501, 0.002, "truncation", converged=False), Outcome.INCONCLUSIVE),
+    (Estimate(0.7, 0.5, "truncation"), Outcome.INCONCLUSIVE),
+    (Estimate(0.51, 0.01, "statistical"), Outcome.HOLDS),
+    (Estimate(0.51, 0.001, "statistical"), Outcome.VIOLATED),
+    (Estimate(0.51, 0.01, "statistical", converged=False), Outcome.INCONCLUSIVE),
+    (Estimate(0.6, 0.1, "statistical"), Outcome.INCONCLUSIVE),
+    (Estimate(0.0, 0.0, "statistical"), Outcome.INCONCLUSIVE),
+    (Estimate(0.6, 0.0, "statistical"), Outcome.VIOLATED),
+    (Estimate(math.nan, 0.0, "statistical"), Outcome.VIOLATED),
+    (Estimate(math.inf, 0.0, "truncation"), Outcome.VIOLATED),
+    (Estimate(np.array([0.5, 0.6]), np.array([0.01, 0.01]), "truncation"), Outcome.VIOLATED),
+    (Estimate(np.array([0.5, 0.501]), np.array([0.01, 0.01]), "truncation"), Outcome.HOLDS),
+]
+
+
+@pytest.mark.parametrize(("estimate", "outcome"), JUDGED, ids=str)
+def test_verdicts(estimate, outcome):
+    verdict = case("lambert-in-furnace").judge(estimate)
+    assert verdict.outcome is outcome
+    assert (verdict.witness is not None) == (outcome is Outcome.VIOLATED)
+    json.dumps(verdict.to_json(), allow_nan=False)
+
+
+def test_darkness_is_judged_too():
+    night = case("lambert-under-sky-tilted-180deg")
+    assert night.exact == 0.0
+    assert night.judge(Estimate(0.0, 0.0, "statistical")).ok
+    assert night.judge(Estimate(1e-3, 0.0, "rounding")).outcome is Outcome.VIOLATED
+    assert night.judge(Estimate(1e-3, 1e-3, "statistical")).outcome is Outcome.INCONCLUSIVE
+
+
+def test_one_sample_that_carries_the_variance_settles_nothing():
+    note = "one sample carries 60 % of the variance: the standard error may be far off"
+    doubtful = Estimate(0.5, 0.001, "statistical", note=note)
+    assert case("lambert-in-furnace").judge(doubtful).outcome is Outcome.INCONCLUSIVE
