@@ -25,6 +25,7 @@ Draw = Callable[[np.random.Generator, int], npt.ArrayLike]
 """``draw(generator, n)`` returns n independent values ``(n,)``, or ``(n, K)``, whose mean is wanted."""
 
 _IN_FLIGHT = 256  # blocks handed to an executor at a time: results are small, and so stays the memory
+_UNDERFLOW = 1e-280  # sums of squares below this may have lost terms
 _DOMINANCE = 0.1  # above this share of the variance in one sample, the central limit is not near
 
 
@@ -83,8 +84,9 @@ class Moments:
 
     @property
     def standard_error(self) -> Any:
-        """The standard error of the mean."""
-        return np.sqrt(self.variance / self.count)
+        """The standard error of the mean; its largest possible value where the squares underflow."""
+        most = 0.5 * (self.high - self.low) / np.sqrt(max(1, self.count - 1))
+        return np.where(self.m2 < _UNDERFLOW, most, np.sqrt(self.variance / self.count))[()]
 
     @property
     def dominance(self) -> Any:

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import functools
-import sys
 import threading
-import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from types import FrameType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,6 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["DIRECTION_SYMBOLS", "Twin", "proved_zero", "scaled_ulps", "ulps"]
 
 _PRECISION = threading.RLock()  # mpmath's working precision is one for the whole process
+_EXPONENTS = 700  # digits between a square of the smallest float64 and 1, and some more
 _MAX_OPERATIONS = 400  # beyond this size, simplify() rarely comes back within the seconds allowed
 
 
@@ -82,25 +80,25 @@ class Twin:
     def at(self, *values: float, digits: int = 50) -> mpmath.mpf:
         """Return the value for these arguments, correct to ``digits`` significant digits.
 
-        The precision is doubled until two results agree, so a source's formula may cancel freely.
+        The precision is raised until two results agree, the second time to where float64's whole range
+        of exponents may cancel: the source's formula need not be a stable one.
 
         Raises
         ------
         RadiokitError
-            When the result does not settle at sixteen times the digits.
+            When the result does not settle.
         """
         import mpmath
 
         numbers = self._numbers(values)
         value = previous = mpmath.mpf(mpmath.nan)
         with _PRECISION:
-            for doubling in range(5):
-                precision = 2**doubling * (digits + 10)
+            for precision in (digits + 10, digits + _EXPONENTS, 2 * (digits + _EXPONENTS)):
                 with mpmath.workdps(precision):
                     previous, value = value, self._real(*numbers)
                     if abs(value - previous) <= abs(value) * mpmath.mpf(10) ** -digits:
                         return value
-            if max(abs(value), abs(previous)) < mpmath.mpf(10) ** (-precision // 3):
+            if max(abs(value), abs(previous)) < mpmath.mpf(10) ** (-_EXPONENTS // 2):
                 return mpmath.mpf(0)  # rounding noise that shrinks with the precision
         raise RadiokitError(f"no {digits} digits of {self.expression} at {values}", values=values)
 
@@ -316,16 +314,24 @@ class _TimeIsUp(BaseException):
 
 @contextmanager
 def _time_limit(seconds: float) -> Iterator[None]:
-    """Raise ``_TimeIsUp`` from the first function call after the time has run out, in this thread only."""
-    end = time.monotonic() + seconds
-    before = sys.getprofile()
+    """Raise ``_TimeIsUp`` in this thread, whatever Python code it runs, once the time has run out."""
+    import ctypes
 
-    def watch(frame: FrameType, event: str, argument: Any) -> None:
-        if event == "call" and time.monotonic() > end:
-            raise _TimeIsUp
+    thread, gate = ctypes.c_ulong(threading.get_ident()), threading.Lock()
+    inside = True
 
-    sys.setprofile(watch)
+    def interrupt() -> None:
+        with gate:
+            if inside:
+                ctypes.pythonapi.PyThreadState_SetAsyncExc(thread, ctypes.py_object(_TimeIsUp))
+
+    timer = threading.Timer(seconds, interrupt)
+    timer.daemon = True
+    timer.start()
     try:
         yield
     finally:
-        sys.setprofile(before)
+        with gate:
+            inside = False
+            ctypes.pythonapi.PyThreadState_SetAsyncExc(thread, None)  # what is raised but not yet seen
+        timer.cancel()

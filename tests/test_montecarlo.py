@@ -1,0 +1,276 @@
+"""Monte Carlo: honest errors, the same answer for any number of workers, clear refusals."""
+
+from __future__ import annotations
+
+import tracemalloc
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+
+import mpmath
+import numpy as np
+import pytest
+
+from radiokit.facts.errors import CallableError, NonFiniteError, ParameterError
+from radiokit.measure.montecarlo import Moments, block_generator, mean, seed_from
+from radiokit.measure.statistics import binomial_interval, sidak, z_test
+
+LEVEL = 1e-6  # chance that a right thing is rejected in a test of this file
+
+
+def square(generator, n):
+    """Squares of uniform numbers: mean 1/3."""
+    return generator.random(n) ** 2
+
+
+def three(generator, n):
+    """Three means at once: 1/2, 1/3, 1/4."""
+    return generator.random((n, 1)) ** np.array([1.0, 2.0, 3.0])
+
+
+# Moments
+
+
+def exact_moments(values):
+    with mpmath.workdps(60):
+        numbers = [mpmath.mpf(float(x)) for x in values]
+        centre = mpmath.fsum(numbers) / len(numbers)
+        return centre, mpmath.fsum((x - centre) ** 2 for x in numbers)
+
+
+@pytest.mark.parametrize(
+    ("centre", "spread"), [(1e9, 1.0), (0.0, 1.0), (-1e15, 3.0), (1e-100, 1e-110), (1e150, 1e140)]
+)
+def test_moments_keep_their_digits(centre, spread, rng):
+    values = centre + spread * rng.standard_normal(3000)
+    total = Moments.of(values[:7])
+    for part in np.array_split(values[7:], 37):
+        total = total.merge(Moments.of(part))
+    mean_exact, m2_exact = exact_moments(values)
+    assert total.count == 3000
+    assert abs(float(total.mean - mean_exact)) <= 20 * np.spacing(abs(float(mean_exact)))
+    # Merging sees the parts' means only as float64: what one unit in their last place is worth.
+    lost = np.spacing(abs(centre)) / spread
+    assert abs(float(total.m2 / m2_exact) - 1) <= 1e-13 + 0.2 * lost
+    assert (total.low, total.high) == (values.min(), values.max())
+
+
+def test_the_sum_of_squares_loses_what_moments_keep(rng):
+    """Planted: the textbook's E[x²] − E[x]² on the same data."""
+    values = 1e9 + rng.standard_normal(3000)
+    truth = float(exact_moments(values)[1] / 2999)
+    naive = (np.sum(values**2) - np.sum(values) ** 2 / 3000) / 2999
+    assert abs(naive / truth - 1) > 1e-2
+    assert abs(Moments.of(values).variance / truth - 1) < 1e-13
+
+
+def test_moments_of_constants_and_of_columns(rng):
+    constant = Moments.of(np.full(1000, 0.1))
+    assert (constant.mean, constant.variance, constant.dominance) == (0.1, 0.0, 0.0)
+    values = rng.random((100, 3))
+    both = Moments.of(values[:40]).merge(Moments.of(values[40:]))
+    np.testing.assert_allclose(both.variance, values.var(axis=0, ddof=1), rtol=1e-13)
+    np.testing.assert_allclose(both.standard_error, np.sqrt(values.var(axis=0, ddof=1) / 100), rtol=1e-13)
+    assert Moments.of([1.0]).variance == np.inf
+    assert Moments.of([0.0] * 9 + [1.0]).dominance == pytest.approx(0.9)
+    with pytest.raises(ParameterError, match="with n at least 1"):
+        Moments.of([])
+
+
+def test_deviations_too_small_to_square_have_no_smaller_error_for_it(rng):
+    values = 1e-200 * (1 + 1e-10 * rng.standard_normal(1000))
+    found = Moments.of(values)
+    assert found.m2 == 0
+    assert found.standard_error >= np.std(1e200 * values) * 1e-200 / np.sqrt(999) > 0
+
+
+# The estimate
+
+
+@pytest.mark.parametrize("workers", [1, 2, 4])
+def test_the_answer_does_not_depend_on_the_workers(workers, seed):
+    alone = mean(three, samples=10_001, rng=seed, block=512)
+    with ThreadPoolExecutor(workers) as pool:
+        shared = mean(three, samples=10_001, rng=seed, block=512, executor=pool)
+    np.testing.assert_array_equal(alone.value, shared.value)
+    np.testing.assert_array_equal(alone.error, shared.error)
+    assert alone.evaluations == shared.evaluations == 10_001
+
+
+def test_processes_give_the_same_answer(seed):
+    with ProcessPoolExecutor(2) as pool:
+        shared = mean(square, samples=5000, rng=seed, block=512, executor=pool)
+    assert shared.value == mean(square, samples=5000, rng=seed, block=512).value
+
+
+def test_early_stopping_does_not_depend_on_the_workers_either(seed):
+    alone = mean(square, samples=1 << 20, rng=seed, block=256, rtol=0.01)
+    with ThreadPoolExecutor(3) as pool:
+        shared = mean(square, samples=1 << 20, rng=seed, block=256, rtol=0.01, executor=pool)
+    assert (alone.value, alone.evaluations) == (shared.value, shared.evaluations)
+    blocks = alone.evaluations // 256
+    assert alone.converged
+    assert alone.error <= 0.01 * alone.value
+    assert blocks & (blocks - 1) == 0, "looked at after 1, 2, 4, 8, ... blocks only"
+
+
+def test_the_interval_covers_as_often_as_it_says(seed):
+    """95 % intervals of 400 seeds, whose count must be a plausible draw for a coverage of 95 %."""
+    trials = 400
+    covered = sum(mean(square, samples=2000, rng=seed + i, block=500).covers(1 / 3) for i in range(trials))
+    low, high = binomial_interval(covered, trials, 1 - LEVEL)
+    assert low <= 0.95 <= high
+
+
+def test_the_interval_covers_after_an_early_stop(seed):
+    """Stopping on rtol at doubled blocks costs little coverage: at most two points of it here."""
+    trials = 300
+    found = [mean(square, samples=1 << 17, rng=seed + i, block=128, rtol=0.03) for i in range(trials)]
+    covered = sum(estimate.covers(1 / 3) for estimate in found)
+    low, high = binomial_interval(covered, trials, 1 - LEVEL)
+    assert low <= 0.95
+    assert high >= 0.93
+    assert all(estimate.converged for estimate in found)
+
+
+def test_a_biased_estimator_is_rejected_and_a_right_one_is_not(seed):
+    right = mean(square, samples=200_000, rng=seed)
+    biased = mean(lambda g, n: 1.01 * square(g, n), samples=200_000, rng=seed + 1)
+    assert z_test(right, 1 / 3) > sidak(LEVEL, 2)
+    assert z_test(biased, 1 / 3) < sidak(LEVEL, 2)
+
+
+def test_an_estimator_whose_error_is_too_small_is_rejected(seed):
+    """Planted: samples repeated four times, so that the standard error is half of what it should be."""
+    trials = 400
+
+    def repeated(g, n):
+        return np.repeat(square(g, n // 4), 4)
+
+    covered = sum(mean(repeated, samples=2000, rng=seed + i, block=500).covers(1 / 3) for i in range(trials))
+    assert binomial_interval(covered, trials, 1 - LEVEL)[1] < 0.95
+
+
+def test_several_means_at_once(seed):
+    found = mean(three, samples=100_000, rng=seed)
+    assert found.kind == "statistical"
+    assert found.value.shape == found.error.shape == (3,)
+    assert np.all(z_test(found, 1 / np.array([2.0, 3.0, 4.0])) > sidak(LEVEL, 3))
+
+
+def test_no_variance_claims_no_more_than_rounding(seed):
+    found = mean(lambda g, n: np.full(n, 0.1), samples=100_000, rng=seed, block=1000)
+    assert found.value == 0.1
+    assert 0 < found.error < 1e-15
+    nothing = mean(lambda g, n: np.zeros(n), samples=100, rng=seed, rtol=0.1, block=10)
+    assert (nothing.value, nothing.error, nothing.evaluations) == (0.0, 0.0, 100)
+    assert nothing.note == "every sample was 0"
+
+
+def test_a_rare_event_does_not_stop_early_nor_pass_unremarked(seed):
+    def rare(g, n):
+        return np.where(g.random(n) < 1e-4, 1e4, 0.0)
+
+    found = mean(rare, samples=4_000_000, rng=seed, block=100, rtol=0.1)
+    assert found.converged
+    assert found.evaluations > 500_000
+    assert z_test(found, 1.0) > LEVEL
+    few = mean(lambda g, n: np.where(np.arange(n) == 0, 1.0, 0.0), samples=1000, rng=seed)
+    assert "one sample carries 100 % of the variance" in few.note
+
+
+def test_what_was_not_reached_is_said(seed):
+    short = mean(square, samples=1000, rng=seed, rtol=1e-9)
+    assert not short.converged
+    assert short.note == "rtol = 1e-09 was not reached with 1000 samples"
+    late = mean(square, samples=10**12, rng=seed, block=1000, seconds=0.02)
+    assert not late.converged
+    assert 1000 <= late.evaluations < 10**12
+    assert late.note.startswith(f"stopped after {late.evaluations} of {10**12} samples: 0.02 s were up")
+    assert late.seconds < 5
+
+
+def test_memory_does_not_grow_with_the_samples(seed):
+    def peak(samples):
+        tracemalloc.start()
+        mean(square, samples=samples, rng=seed, block=1024)
+        size = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        return size
+
+    peak(2048)
+    assert peak(400_000) < 1.5 * peak(40_000)
+
+
+# Seeds
+
+
+def test_the_seed_decides(seed):
+    first, again, other = (mean(square, samples=1000, rng=s).value for s in (seed, seed, seed + 1))
+    assert first == again != other
+    generators = (np.random.default_rng(seed), np.random.default_rng(seed))
+    assert (
+        mean(square, samples=1000, rng=generators[0]).value
+        == mean(square, samples=1000, rng=generators[1]).value
+    )
+    assert mean(square, samples=1000, rng=generators[0]).value != first
+    assert mean(square, samples=1000).value != mean(square, samples=1000).value
+    assert seed_from(np.int64(3)) == 3
+
+
+def test_blocks_are_independent(seed):
+    draws = np.array([block_generator(seed, i).random(1000) for i in range(50)])
+    correlation = np.corrcoef(draws)[np.triu_indices(50, 1)]
+    assert len(np.unique(draws)) == draws.size
+    assert np.max(np.abs(correlation)) < 6 / np.sqrt(1000)
+
+
+# Refusals
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+def test_a_sample_that_is_no_number_is_never_averaged(bad, seed):
+    def draw(g, n):
+        return np.where(np.arange(n) == 17, bad, g.random(n))
+
+    with pytest.raises(NonFiniteError, match=rf"draw returned {bad} as sample 17 of block 0$") as caught:
+        mean(draw, samples=1000, rng=seed, block=100)
+    assert caught.value.fields["sample"] == 17
+
+
+def test_wrong_shapes_are_refused(seed):
+    with pytest.raises(CallableError, match=r"returned shape \(3,\) where \(10,\) or \(10, K\) is due"):
+        mean(lambda g, n: np.zeros(3), samples=10, rng=seed)
+    with pytest.raises(CallableError, match="blocks of different shapes"):
+        mean(lambda g, n: np.ones((n, 1 + n % 2)), samples=15, rng=seed, block=10)
+
+
+def test_an_error_in_the_draw_is_not_swallowed(seed):
+    def broken(g, n):
+        raise ZeroDivisionError("mine")
+
+    with ThreadPoolExecutor(2) as pool, pytest.raises(ZeroDivisionError, match="mine"):
+        mean(broken, samples=10_000, rng=seed, block=10, executor=pool)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"samples": 1}, "samples = 1 is not allowed: it must be an integer, at least 2"),
+        ({"samples": 10.0}, "samples = 10.0 is not allowed: it must be an integer, at least 2"),
+        ({"samples": True}, "samples = True is not allowed: it must be an integer, at least 2"),
+        ({"block": 0}, "block = 0 is not allowed: it must be an integer, at least 1"),
+        ({"rtol": 0.0}, "rtol = 0.0 is not allowed: it must be above 0, or None"),
+        ({"seconds": float("nan")}, "seconds = nan is not allowed: it must be above 0, or None"),
+        (
+            {"rng": -1},
+            "rng = -1 is not allowed: it must be a non-negative int, a numpy.random.Generator, or None",
+        ),
+        (
+            {"rng": "7"},
+            "rng = '7' is not allowed: it must be a non-negative int, a numpy.random.Generator, or None",
+        ),
+    ],
+)
+def test_arguments_out_of_range(arguments, message):
+    with pytest.raises(ParameterError) as caught:
+        mean(square, **{"samples": 100, **arguments})
+    assert str(caught.value) == message
