@@ -82,7 +82,7 @@ ROWS = (
             out_of_range("exponent", "steep", "[1, 1e6]"),
             out_of_range("reflectance", None, "[0, 1]"),
         ),
-        # Exactly ρ at normal incidence, for every exponent; elsewhere to the digits known before.
+        # Exactly ρ at normal incidence, for every exponent.
         albedos=tuple(({"exponent": n}, 0.0, 1.0) for n in (1.0, 10.0, 1e3, 1e6)),
     ),
     Row(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tracemalloc
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from multiprocessing import get_context
 
 import mpmath
 import numpy as np
@@ -96,9 +97,10 @@ def test_the_answer_does_not_depend_on_the_workers(workers, seed):
 
 
 def test_processes_give_the_same_answer(seed):
-    with ProcessPoolExecutor(2) as pool:
-        shared = mean(square, samples=5000, rng=seed, block=512, executor=pool)
-    assert shared.value == mean(square, samples=5000, rng=seed, block=512).value
+    draw = np.random.Generator.random  # picklable by any way of starting a process
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        shared = mean(draw, samples=5000, rng=seed, block=512, executor=pool)
+    assert shared.value == mean(draw, samples=5000, rng=seed, block=512).value
 
 
 def test_early_stopping_does_not_depend_on_the_workers_either(seed):

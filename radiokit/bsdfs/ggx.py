@@ -27,14 +27,8 @@ SOURCE = Source(
     year=2007,
     title="Microfacet Models for Refraction through Rough Surfaces. Eurographics Symposium on Rendering",
     doi="10.2312/EGWR/EGSR07/195-206",
-    equation="20 (the BRDF) and 33 (D); G from Heitz (2014), doi:10.1145/2601097, equations 72 and 99",
-)
-SAMPLING_SOURCE = Source(
-    authors="Dupuy, Benyoub",
-    year=2023,
-    title="Sampling Visible GGX Normals with Spherical Caps. Computer Graphics Forum 42(8)",
-    doi="10.1111/cgf.14867",
-    equation="the cap of the sphere that the stretched view direction lights",
+    equation="20 (the BRDF) and 33 (D); Λ and G₂ from Heitz (2014), Understanding the Masking-Shadowing "
+    "Function, Journal of Computer Graphics Techniques 3(2), equations 72 and 99",
 )
 
 _HORIZON = 1e-150  # a cosine below this is 0: no unit vector tells them apart, and squares would underflow
@@ -123,7 +117,8 @@ class GGX(BSDF):
     def sample(self, u: FloatArray, wo: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return ``wi`` about visible normals, and ``weight = F G₂ / G₁``.
 
-        Source: Dupuy & Benyoub (2023), with the cap's radius and height written without cancellation.
+        Source: Dupuy & Benyoub (2023), Sampling Visible GGX Normals with Spherical Caps, Computer Graphics
+        Forum 42(8), doi:10.1111/cgf.14867; the cap's radius and height are written without cancellation.
         """
         x, y, z = self.alpha * wo[..., 0], self.alpha * wo[..., 1], np.abs(wo[..., 2])
         length = np.sqrt(x * x + y * y + z * z)
