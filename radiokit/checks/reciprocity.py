@@ -77,14 +77,15 @@ def reciprocity(f: BSDF, *, count: int = 1 << 16, tolerance: float = TOLERANCE, 
             evaluations += spent
         a, b = _at(f, *pair), _at(f, pair[1], pair[0])
         channel = int(np.argmax(np.abs(a - b)))
-        a, b = float(a[channel]), float(b[channel])
-        ratio = f"{max(a, b) / min(a, b):.6g} times" if min(a, b) > 0 else "0 against non-zero"
+        one, two = float(a[channel]), float(b[channel])
+        low, high = sorted((one, two))
+        ratio = f"{high / low:.6g} times" if low > 0 else f"{low:.6g} against {high:.6g}"
         return Verdict(
             outcome=Outcome.VIOLATED,
             evidence=Evidence.REFUTED,
-            message=f"the two values differ: {ratio}; relative difference {_severity(a, b, 0.0):.3g}",
+            message=f"the two values differ: {ratio}; relative difference {_severity(one, two, 0.0):.3g}",
             witness=Witness(
-                {"wi": pair[0].tolist(), "wo": pair[1].tolist()}, {"f(wi, wo)": a, "f(wo, wi)": b}
+                {"wi": pair[0].tolist(), "wo": pair[1].tolist()}, {"f(wi, wo)": one, "f(wo, wi)": two}
             ),
             evaluations=evaluations,
             seconds=time.perf_counter() - start,
@@ -114,7 +115,7 @@ def _proved(f: BSDF) -> bool:
         twin = f.symbolic()
     except RadiokitError:
         return False
-    from radiokit.measure.twin import proved_zero
+    from radiokit.measure.proof import proved_zero
 
     return proved_zero(twin.swapped().expression - twin.expression)
 

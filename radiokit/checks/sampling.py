@@ -186,8 +186,8 @@ def _distribution(
     truth = directional_albedo(f, wo, rtol=1e-6, max_evaluations=400_000)
     row["evaluations"] += truth.evaluations
     columns, exact = channels(weight), np.atleast_1d(truth.value)
-    error = np.broadcast_to(truth.error, exact.shape) + 1e-12
-    chances = [bernstein_test(columns[:, k], exact[k], error[k]) for k in range(len(exact))]
+    slack = np.broadcast_to(truth.error, exact.shape) + 1e-12
+    chances = [bernstein_test(columns[:, k], exact[k], slack[k]) for k in range(len(exact))]
     k = int(np.argmin(chances))
     p = row["p_albedo"] = min(1.0, chances[k] * len(chances))
     if p < level:

@@ -7,13 +7,14 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from radiokit.checks.probes import GRAZING, channels, polar
 from radiokit.contracts.albedo import Side, delta_albedo, directional_albedo, integrand
 from radiokit.contracts.bsdf import BSDF, FloatArray
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.converge import BLOCK
-from radiokit.measure.slope import find_lobe, slope_rule, turned
+from radiokit.measure.slope import PROBE, find_lobe, slope_rule, turned
 
 __all__ = ["STEP", "Extremum", "scan_supremum"]
 
@@ -23,6 +24,12 @@ STEP = np.deg2rad(0.15)
 AZIMUTHS = 24
 FINE, COARSE, CHEAP = 24, 16, 12
 """Nodes along each axis of the scan's two rules, and of the only rule when evaluations are dear."""
+
+FEWEST = 19
+"""Angles of the coarsest scan."""
+
+THREE_RULES = 4096
+"""Evaluations without which a quadrature cannot bound its error."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +71,7 @@ def scan_supremum(f: BSDF, *, fixed: Side, turns: bool, budget: int, tolerance: 
     fine, coarse = (FINE, COARSE) if rich else (CHEAP, 0)
     per_angle = sides * (fine**2 + coarse**2)
     affordable = int(0.7 * budget / per_angle)
-    count = int(np.clip(affordable, 31, GRAZING / STEP + 1))
+    count = int(np.clip(affordable, FEWEST, GRAZING / STEP + 1))
     theta = np.linspace(0.0, GRAZING, count)
     step = float(theta[1])
     if rich:
@@ -77,40 +84,43 @@ def scan_supremum(f: BSDF, *, fixed: Side, turns: bool, budget: int, tolerance: 
         )
         theta, phi = np.concatenate([theta, grid_t.ravel()]), np.concatenate([phi, grid_p.ravel()])
 
-    aim, evaluations = _aim(f, theta, phi, fixed)
+    aim, evaluations = _aim(f, theta, phi, fixed, rich)
     w = polar(np.cos(theta), phi)
     one = _scan(f, w, aim, 1.0, fine, fixed)
     two = _scan(f, w, aim, 1.3, coarse, fixed) if coarse else one
     evaluations += len(theta) * per_angle
     doubt = np.abs(one - two)
     order = np.argsort(-(one + doubt), kind="stable")
-    tops = _separate(np.append([0, int(np.argmax(theta))], order), theta, phi, step)
+    if rich:
+        order = np.append([0, int(np.argmax(theta))], order)
+    tops = _separate(order, theta, phi, step, 6 if rich else 1)
 
     best: Estimate | None = None
     place = w[0]
-    left = max(budget - evaluations, 40_000)
+    left = budget - evaluations
+    share = max(left // (2 * len(tops)), THREE_RULES)
+
+    def integrate(index: int, direction: FloatArray, **tolerances: Any) -> Estimate:
+        nonlocal evaluations
+        width = None if rich or aim.retro[index] else float(aim.width[index])
+        found = directional_albedo(
+            f, direction, fixed=fixed, width=width, max_evaluations=share, **tolerances
+        )
+        evaluations += found.evaluations
+        return found
+
     for index in tops:
         direction, spent = _refined(f, theta, phi, aim, index, step, fixed, turns, left // (8 * len(tops)))
         evaluations += spent
-        for candidate in (direction, w[index]):
-            found = _worst_channel(
-                directional_albedo(
-                    f,
-                    candidate,
-                    fixed=fixed,
-                    rtol=0.0,
-                    atol=tolerance,
-                    max_evaluations=left // (2 * len(tops)),
-                )
-            )
-            evaluations += found.evaluations
+        for candidate in (w[index], direction):
+            found = _worst_channel(integrate(index, candidate, rtol=0.0, atol=tolerance))
             if best is None or found.value - found.error > best.value:  # a tie keeps the first
                 best, place = found, candidate
             if np.array_equal(direction, w[index]):
                 break
     assert best is not None
-    least = directional_albedo(f, w[np.argmin(one)], fixed=fixed, rtol=1e-6, max_evaluations=left // 4)
-    evaluations += least.evaluations
+    lowest = int(np.argmin(one))
+    least = integrate(lowest, w[lowest], rtol=1e-6)
     angle = float(np.arctan2(np.hypot(place[0], place[1]), place[2]))
     last = float(theta.max())
     return Extremum(
@@ -137,19 +147,21 @@ class _Aim:
     """The lobe's width, and whether it is a retro-reflective one, at each scanned direction."""
 
     width: FloatArray
-    retro: FloatArray
+    retro: npt.NDArray[np.bool_]
 
     def __getitem__(self, index: slice) -> _Aim:
         return _Aim(self.width[index], self.retro[index])
 
 
-def _aim(f: BSDF, theta: FloatArray, phi: FloatArray, fixed: Side) -> tuple[_Aim, int]:
-    """Return where to aim at every angle: by the model's own word, or found at nine and interpolated."""
+def _aim(f: BSDF, theta: FloatArray, phi: FloatArray, fixed: Side, rich: bool) -> tuple[_Aim, int]:
+    """Return where to aim at every angle: by the model's own word, or found at some and interpolated."""
     known = f.lobe_width()
     if known is not None:
         return _Aim(np.full(len(theta), known), np.zeros(len(theta), dtype=bool)), 0
-    knots = np.append(np.linspace(0.0, np.deg2rad(85), 7), np.deg2rad([89.0, 89.9]))
-    found = [find_lobe(integrand(f, w, fixed), w) for w in polar(np.cos(knots), np.full(9, phi[0]))]
+    knots = np.deg2rad([*np.linspace(0.0, 85.0, 7), 89.0, 89.9] if rich else [0.0, 60.0, 89.0])
+    probe = PROBE if rich else (24, 6)
+    places = polar(np.cos(knots), np.full(len(knots), phi[0]))
+    found = [find_lobe(integrand(f, w, fixed), w, probe) for w in places]
     width = np.exp(np.interp(theta, knots, np.log([lobe.width for lobe in found])))
     retro = np.interp(theta, knots, [float(lobe.retro) for lobe in found]) > 0.5
     return _Aim(width, retro), sum(lobe.evaluations for lobe in found)
@@ -180,7 +192,7 @@ def _integrals(f: BSDF, w: FloatArray, aim: _Aim, scale: float, n: int, fixed: S
     return result
 
 
-def _separate(order: FloatArray, theta: FloatArray, phi: FloatArray, step: float, most: int = 6) -> list[int]:
+def _separate(order: Any, theta: FloatArray, phi: FloatArray, step: float, most: int) -> list[int]:
     """Pick the highest few that are no neighbours of one another."""
     picked: list[int] = []
     for index in order:
@@ -211,7 +223,10 @@ def _refined(
 
     n = 32 if budget > 60_000 else CHEAP
     cost = n * n * (1 if f.isotropic else 2)
-    evaluations = int(np.clip(budget // cost, 5, 25))
+    start = polar(np.cos(theta[index : index + 1]), phi[index : index + 1])[0]
+    evaluations = int(min(budget // cost, 25))
+    if evaluations < 5:
+        return start, 0
     low, high = max(0.0, theta[index] - step), min(GRAZING, theta[index] + step)
     spent = 0
 
@@ -240,7 +255,6 @@ def _refined(
             options={"maxfev": 3 * evaluations, "xatol": 1e-6},
         )
         best = result.x[0], result.x[1], result.fun
-    start = polar(np.cos(theta[index : index + 1]), phi[index : index + 1])[0]
     if -best[2] <= -negative(theta[index], phi[index]):
         return start, spent
     return polar(np.cos([best[0]]), [best[1]])[0], spent

@@ -110,11 +110,14 @@ def directional_albedo(
     fixed_direction: FloatArray,
     *,
     fixed: Side = "wo",
+    width: float | None = None,
     rtol: float = 1e-8,
     atol: float = 0.0,
     max_evaluations: int = 4_000_000,
 ) -> Estimate:
     """Return the directional albedo by quadrature, with a truncation bound.
+
+    ``width`` is the lobe's width if the caller knows it better than the model does.
 
     >>> from radiokit.contracts.bsdf import bsdf
     >>> estimate = directional_albedo(bsdf("lambert", reflectance=0.5), np.array([0.0, 0.6, 0.8]))
@@ -124,7 +127,7 @@ def directional_albedo(
     found = hemisphere(
         integrand(model, fixed_direction, fixed),
         wo=fixed_direction,
-        width=model.lobe_width(),
+        width=model.lobe_width() if width is None else width,
         rtol=rtol,
         atol=atol,
         symmetric=model.isotropic,

@@ -140,7 +140,7 @@ class BSDF(ABC):
         return value[()]
 
 
-REGISTRY = Registry("BSDF", "radiokit.bsdfs", BSDF, "radiokit.bsdfs")
+REGISTRY: Registry[BSDF] = Registry("BSDF", "radiokit.bsdfs", BSDF, "radiokit.bsdfs")
 
 
 def list_bsdfs() -> list[str]:
@@ -167,5 +167,4 @@ def bsdf(name: str, **parameters: Any) -> BSDF:
     >>> bsdf("lambert", reflectance=0.5)
     Lambert(reflectance=0.5)
     """
-    model: BSDF = REGISTRY.make(name, parameters)
-    return model
+    return REGISTRY.make(name, parameters)

@@ -68,7 +68,7 @@ class Emitter(ABC):
         return None
 
 
-REGISTRY = Registry("emitter", "radiokit.emitters", Emitter, "radiokit.emitters")
+REGISTRY: Registry[Emitter] = Registry("emitter", "radiokit.emitters", Emitter, "radiokit.emitters")
 
 
 def list_emitters() -> list[str]:
@@ -93,5 +93,4 @@ def emitter(name: str, **parameters: Any) -> Emitter:
     >>> emitter("constant", radiance=1.0).name
     'constant'
     """
-    light: Emitter = REGISTRY.make(name, parameters)
-    return light
+    return REGISTRY.make(name, parameters)

@@ -7,15 +7,17 @@ import inspect
 import pkgutil
 from functools import cached_property
 from importlib.metadata import entry_points
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from radiokit.contracts.parameters import build
 from radiokit.facts.errors import RadiokitError, UnknownNameError
 
 __all__ = ["Registry"]
 
+Model = TypeVar("Model")
 
-class Registry:
+
+class Registry(Generic[Model]):
     """The models of one kind: one class in each file of ``package``, plus the entry points ``group``.
 
     Nothing is imported before the first question is asked.
@@ -25,9 +27,9 @@ class Registry:
         self.kind, self.package, self.base, self.group = kind, package, base, group
 
     @cached_property
-    def classes(self) -> dict[str, type]:
+    def classes(self) -> dict[str, type[Model]]:
         """All model classes, by name, in alphabetical order."""
-        found: dict[str, type] = {}
+        found: dict[str, type[Model]] = {}
         package = importlib.import_module(self.package)
         for info in pkgutil.iter_modules(package.__path__):
             if info.name.startswith("_"):
@@ -40,7 +42,7 @@ class Registry:
             self._add(found, point.load(), point.value)
         return dict(sorted(found.items()))
 
-    def _add(self, found: dict[str, type], cls: Any, where: str) -> None:
+    def _add(self, found: dict[str, type[Model]], cls: Any, where: str) -> None:
         if not (inspect.isclass(cls) and issubclass(cls, self.base)):
             raise RadiokitError(f"{where} is no {self.base.__name__}", where=where)
         name = getattr(cls, "name", "")
@@ -54,13 +56,13 @@ class Registry:
         """Return the names, sorted."""
         return list(self.classes)
 
-    def get(self, name: str) -> type:
+    def get(self, name: str) -> type[Model]:
         """Return the class called ``name``."""
         if name not in self.classes:
             raise UnknownNameError(self.kind, name, self.classes)
         return self.classes[name]
 
-    def by_class_name(self, name: str) -> type:
+    def by_class_name(self, name: str) -> type[Model]:
         """Return the class that is called ``name`` in Python, such as ``GGX``; for a package's lazy names.
 
         Raises
@@ -74,6 +76,7 @@ class Registry:
         known = ", ".join(cls.__name__ for cls in self.classes.values())
         raise AttributeError(f"{self.package} has no class {name!r}; it has: {known}")
 
-    def make(self, name: str, parameters: dict[str, Any]) -> Any:
+    def make(self, name: str, parameters: dict[str, Any]) -> Model:
         """Return the model called ``name`` with these parameters."""
-        return build(self.kind, name, self.get(name), parameters)
+        model: Model = build(self.kind, name, self.get(name), parameters)
+        return model

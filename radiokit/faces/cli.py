@@ -252,7 +252,7 @@ def lobe(
 
     f = _load(target, context)
     _direction(theta, phi)
-    saved = save_lobe(f, theta=np.deg2rad(theta), phi=np.deg2rad(phi), png=png, scale=scale)
+    saved = save_lobe(f, theta=np.deg2rad(theta), phi=np.deg2rad(phi), png=png, scale=scale)  # type: ignore[arg-type]
     if json:
         show_json({"target": target, "theta_deg": theta, "phi_deg": phi, "png": str(saved)})
     else:

@@ -98,8 +98,10 @@ def load_target(target: str, parameters: dict[str, Any]) -> BSDF:
 
 def _model(name: str, parameters: dict[str, Any]) -> BSDF:
     if name not in list_bsdfs():
-        hint = suggestion(name, list_bsdfs())
-        raise TargetError(f"unknown model {name!r}{hint}. Known: {', '.join(list_bsdfs())}; or give {FORMS}")
+        hint = suggestion(name, list_bsdfs()) or "."
+        raise TargetError(
+            f"unknown model {name!r}{hint} Known: {', '.join(list_bsdfs())}; or give file.py:function"
+        )
     return bsdf(name, **parameters)
 
 

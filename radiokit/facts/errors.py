@@ -111,9 +111,7 @@ class CallableError(RadiokitError):
 
     def __init__(self, function: str, problem: str, wi: Any = None, wo: Any = None) -> None:
         where = "" if wi is None else f" at wi = {_triple(wi)}, wo = {_triple(wo)}"
-        super().__init__(
-            f"{function} {problem}{where}", function=function, problem=problem, wi=wi, wo=wo
-        )
+        super().__init__(f"{function} {problem}{where}", function=function, problem=problem, wi=wi, wo=wo)
 
 
 def _triple(direction: Any) -> str:
@@ -141,4 +139,4 @@ class MissingExtraError(RadiokitError, ImportError):
 
 
 class NonFiniteError(RadiokitError, ArithmeticError):
-    """An integrand or a sample is NaN or infinite. ``fields`` has the ``value`` and where it is known ``at``."""
+    """An integrand or a sample is NaN or infinite; ``fields`` has its ``value``, and where it is, ``at``."""

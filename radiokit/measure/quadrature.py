@@ -135,7 +135,7 @@ def hemisphere(
 
 def _scan(integrand: Integrand, wo: FloatArray, width: float) -> tuple[Any, Any]:
     """Return a rough integral and its uncertainty from points spread evenly, which see between the nodes."""
-    index = np.arange(1, SCAN + 1)
+    index = np.arange(1.0, SCAN + 1)
     x, s = (0.5 + index * 0.7548776662466927) % 1.0, (0.5 + index * 0.5698402909980532) % 1.0
     wi, weight, _ = slope_map(wo, width, x, s)
     wi[::2] = mirrored(wi[::2], wo)

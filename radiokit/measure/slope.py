@@ -26,6 +26,7 @@ __all__ = [
 FloatArray = npt.NDArray[np.float64]
 
 PROBE = (48, 16)
+"""Radii and azimuths at which an unknown integrand is looked at for its lobe."""
 PROBE_WIDTH = 1e-5
 RETRO = 0.1
 """How much more mass must be seen around ``wo`` than around its mirror direction to aim there."""
@@ -206,7 +207,9 @@ class Lobe:
     evaluations: int
 
 
-def find_lobe(integrand: Callable[[FloatArray], Any], wo: npt.ArrayLike) -> Lobe:
+def find_lobe(
+    integrand: Callable[[FloatArray], Any], wo: npt.ArrayLike, probe: tuple[int, int] = PROBE
+) -> Lobe:
     """Find the lobe at which ``slope_rule`` should aim for an unknown integrand.
 
     The width is the median slope of the half vector under the integrand's own mass, seen by a rule whose
@@ -218,7 +221,7 @@ def find_lobe(integrand: Callable[[FloatArray], Any], wo: npt.ArrayLike) -> Lobe
     (True, False)
     """
     wo = np.asarray(wo, dtype=float)
-    wi, weight, rho = _grid(wo, np.asarray(PROBE_WIDTH), PROBE)
+    wi, weight, rho = _grid(wo, np.asarray(PROBE_WIDTH), probe)
     both = np.concatenate([wi, mirrored(wi, wo[None, :])])
     order = np.argsort(rho)
     best, best_mass, evaluations = Lobe(1.0, 1.0, False, 0), 0.0, 0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,11 +15,14 @@ from radiokit.contracts.bsdf import BSDF
 from radiokit.measure.slope import gauss_legendre, slope_rule
 from radiokit.worlds.cases.catalogue import Case, case
 
-__all__ = ["FURNACE", "Line", "draw_work_precision", "work_precision"]
+__all__ = ["FURNACES", "Line", "draw_work_precision", "work_precision"]
 
-FURNACE = "ggx-0.3-in-furnace-at-60deg"
+FURNACES = ("ggx-0.3-in-furnace-at-60deg", "ggx-0.05-in-furnace-at-89deg")
+"""An easy furnace and a hard one: a narrow lobe at grazing incidence."""
+
+STYLES = (("#0b6e4f", "o"), ("#999999", "s"), ("#1f5fbf", "^"), ("#c8553d", "v"), ("#8e44ad", "D"))
 SIZES = (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256)
-SAMPLES = tuple(4**k for k in range(3, 10))
+SAMPLES = tuple(4**k for k in range(3, 9))
 SEEDS = 8
 REPEATS = 3
 FLOOR = 1e-16
@@ -36,7 +39,7 @@ class Line:
     claimed: list[float] | None = None
 
 
-def work_precision(name: str = FURNACE, *, seed: int = 0) -> list[Line]:
+def work_precision(name: str = FURNACES[0], *, seed: int = 0) -> list[Line]:
     """Measure every method on one furnace case, at rising cost.
 
     Quadrature errors are those of one run; Monte Carlo errors are the root mean square over eight seeds,
@@ -59,38 +62,37 @@ def work_precision(name: str = FURNACE, *, seed: int = 0) -> list[Line]:
     return lines
 
 
-def draw_work_precision(path: Path, *, name: str = FURNACE, seed: int = 0) -> Path:
-    """Draw the diagram into ``path``, whose folder is made when it is missing."""
+def draw_work_precision(path: Path, *, names: Sequence[str] = FURNACES, seed: int = 0) -> Path:
+    """Draw one panel for each furnace case into ``path``, whose folder is made when it is missing."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    furnace = case(name)
-    figure = Figure(figsize=(8.0, 5.2), dpi=150, layout="constrained")
+    figure = Figure(figsize=(5.6 * len(names), 4.8), dpi=150, layout="constrained")
     FigureCanvasAgg(figure)
-    axes = figure.add_subplot()
-    styles = (("#0b6e4f", "o"), ("#999999", "s"), ("#1f5fbf", "^"), ("#c8553d", "v"), ("#8e44ad", "D"))
-    for line, (colour, marker) in zip(work_precision(name, seed=seed), styles, strict=False):
-        error = np.maximum(line.error, FLOOR)
-        axes.loglog(
-            np.multiply(1e3, line.seconds), error, marker=marker, ms=4, color=colour, label=line.method
-        )
-        if line.claimed is not None:
-            claimed = np.maximum(line.claimed, FLOOR)
-            axes.loglog(np.multiply(1e3, line.seconds), claimed, ls=":", lw=1.2, color=colour)
-    axes.axhline(np.finfo(float).eps, color="black", lw=0.6, ls="--")
-    axes.text(
-        0.995, 1.3 * np.finfo(float).eps, "float64", transform=axes.get_yaxis_transform(), ha="right", size=8
-    )
-    axes.set_xlabel("time [ms]")
-    axes.set_ylabel("relative error")
-    axes.set_title(
-        f"{furnace.title}: error against time\n(dotted: the standard error that was claimed)", size=10
-    )
-    axes.grid(which="major", lw=0.3)
-    axes.legend(fontsize=8, loc="lower left")
+    panels = figure.subplots(1, len(names), sharey=True, squeeze=False)[0]
+    for axes, name in zip(panels, names, strict=True):
+        _draw_panel(axes, name, seed)
+    panels[0].set_ylabel("relative error")
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), fontsize=8, frameon=False)
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path)
     return path
+
+
+def _draw_panel(axes: Any, name: str, seed: int) -> None:
+    for line, (colour, marker) in zip(work_precision(name, seed=seed), STYLES, strict=False):
+        milliseconds = np.multiply(1e3, line.seconds)
+        error = np.maximum(line.error, FLOOR)
+        axes.loglog(milliseconds, error, marker=marker, ms=4, lw=1.2, color=colour, label=line.method)
+        if line.claimed is not None:
+            axes.loglog(milliseconds, np.maximum(line.claimed, FLOOR), ls=":", lw=1.2, color=colour)
+    axes.axhline(np.finfo(float).eps, color="black", lw=0.6, ls="--")
+    place = axes.get_yaxis_transform()
+    axes.text(0.99, 1.4 * np.finfo(float).eps, "float64", transform=place, ha="right", size=8)
+    axes.set_xlabel("time [ms]")
+    axes.set_title(f"{case(name).title}\n(dotted: the standard error that was claimed)", size=9)
+    axes.grid(which="major", lw=0.3)
 
 
 def _rule(label: str, rule: Callable[[int], float], exact: float) -> Line:

@@ -1,0 +1,129 @@
+"""The main job: every model as it claims, every case by every method, the same for any number of workers."""
+
+from __future__ import annotations
+
+import json
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
+from multiprocessing import get_context
+
+import numpy as np
+import pytest
+
+import radiokit as rk
+from radiokit.bsdfs.lambert import Lambert
+from radiokit.checks.claims import claims
+from radiokit.contracts.bsdf import Claims
+from radiokit.faces.plots.work_precision import draw_work_precision, work_precision
+from radiokit.faces.validate import MUST_HOLD, validate
+from radiokit.facts.verdict import Outcome
+
+
+@pytest.fixture(scope="module")
+def found():
+    return validate()
+
+
+def test_everything_holds(found):
+    wrong = [str(v) for report in found.models for v in report if v.check in MUST_HOLD and not v.ok]
+    wrong += [f"{row.case} {row.method}: {row.verdict}" for row in found.cases if not row.verdict.ok]
+    assert not wrong
+    assert found.exit_code == 0
+
+
+def test_every_model_and_every_method_of_every_case_is_there(found):
+    assert {report.subject for report in found.models} == set(rk.list_bsdfs())
+    expected = {(name, method) for name in rk.list_cases() for method in rk.case(name).methods}
+    assert {(row.case, row.method) for row in found.cases} == expected
+
+
+def test_the_run_is_json(found):
+    data = json.loads(json.dumps(found.to_json(), allow_nan=False))
+    assert data["outcome"] == "holds"
+    row = data["cases"][0]
+    assert {
+        "exact",
+        "value",
+        "true_error",
+        "claimed_error",
+        "ratio",
+        "p_value",
+        "evaluations",
+        "seconds",
+    } <= set(row)
+
+
+def test_bounds_hold_with_nothing_to_spare_but_rounding(found):
+    for row in found.cases:
+        if row.verdict.estimate.is_bound:
+            assert row.true_error <= row.verdict.estimate.error + 16 * np.finfo(float).eps * abs(row.exact)
+
+
+def test_the_findings_do_not_depend_on_the_workers(found):
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as executor:
+        again = validate(executor=executor, workers=2)
+
+    def essence(run):
+        rows = [(row.case, row.method, row.verdict.estimate.value) for row in run.cases]
+        return rows, [[(v.check, v.outcome, v.witness) for v in report] for report in run.models]
+
+    assert essence(again) == essence(found)
+
+
+def test_a_wrong_case_and_a_false_claim_are_not_let_pass(found):
+    report = found.models[0]
+    bad = replace(report["claims"], outcome=Outcome.VIOLATED)
+    wrong = replace(report, verdicts=(*[v for v in report if v.check != "claims"], bad))
+    assert replace(found, models=(wrong, *found.models[1:])).exit_code == 1
+    row = found.cases[0]
+    doubtful = replace(row, verdict=replace(row.verdict, outcome=Outcome.INCONCLUSIVE))
+    assert replace(found, cases=(doubtful,)).exit_code == 3
+
+
+@dataclass(frozen=True, kw_only=True)
+class Boastful(Lambert):
+    """A Lambert surface that claims what it is told to."""
+
+    boast: Claims | None = None
+
+    @property
+    def claims(self):
+        return self.boast or super().claims
+
+
+@pytest.mark.parametrize(
+    ("boast", "says"),
+    [
+        (Claims(reciprocity="no", conserves=True), "reciprocity: claimed no, observed holds"),
+        (Claims(reciprocity="yes", conserves=False), "conserves: claimed no, observed holds"),
+        (
+            Claims(reciprocity="yes", conserves=True, lossless=True),
+            "lossless: claimed yes, observed violated",
+        ),
+        (Claims(reciprocity="yes", conserves=True, delta=True), "delta: claimed yes, observed violated"),
+    ],
+)
+def test_a_false_claim_is_seen_in_either_direction(boast, says):
+    f = Boastful(reflectance=0.5, boast=boast)
+    verdict = claims(f, rk.check(f))
+    assert verdict.outcome is Outcome.VIOLATED
+    assert verdict.message == says
+
+
+def test_a_true_claim_is_accepted_and_none_is_no_claim():
+    f = Boastful(reflectance=0.5)
+    assert claims(f, rk.check(f)).outcome is Outcome.HOLDS
+    box = rk.as_bsdf(lambda wi, wo: 0.1 + 0 * wi[:, 2])
+    assert claims(box, rk.check(box)).outcome is Outcome.INCONCLUSIVE
+
+
+def test_the_work_precision_diagram_shows_the_right_slopes(tmp_path, seed):
+    lines = {line.method: line for line in work_precision(seed=seed % 1000)}
+    rule = lines["slope-space rule"]
+    assert min(rule.error) < 1e-13
+    for name in ("Monte Carlo, BSDF-sampled", "balance heuristic"):
+        line = lines[name]
+        slope = np.polyfit(np.log(line.evaluations), np.log(line.error), 1)[0]
+        assert -0.7 < slope < -0.3
+    path = draw_work_precision(tmp_path / "new" / "picture.png")
+    assert path.stat().st_size > 10_000
