@@ -24,9 +24,10 @@ from radiokit.facts.directions import half_vector, reflect, spherical_to_cartesi
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.montecarlo import Moments
+from radiokit.measure.proof import proved_zero
 from radiokit.measure.quadrature import hemisphere
 from radiokit.measure.statistics import sidak, z_test
-from radiokit.measure.twin import proved_zero, scaled_ulps
+from radiokit.measure.twin import scaled_ulps
 
 
 @dataclass(frozen=True)

@@ -13,15 +13,8 @@ import pytest
 import sympy
 
 from radiokit.facts.errors import ParameterError, RadiokitError
-from radiokit.measure.twin import (
-    DIRECTION_SYMBOLS,
-    Twin,
-    _time_limit,
-    _TimeIsUp,
-    proved_zero,
-    scaled_ulps,
-    ulps,
-)
+from radiokit.measure.proof import TimeIsUp, proved_zero, time_limit
+from radiokit.measure.twin import DIRECTION_SYMBOLS, Twin, scaled_ulps, ulps
 
 X_I, Y_I, Z_I, X_O, Y_O, Z_O = DIRECTION_SYMBOLS
 A, B = sympy.symbols("a b", positive=True)
@@ -29,7 +22,7 @@ UP = (0.0, 0.0, 1.0)
 
 
 def test_importing_the_module_loads_no_sympy():
-    code = "import sys, radiokit.measure.twin; print('sympy' in sys.modules, 'mpmath' in sys.modules)"
+    code = "import sys, radiokit.measure.proof; print('sympy' in sys.modules, 'mpmath' in sys.modules)"
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert out.split() == ["False", "False"]
 
@@ -192,19 +185,19 @@ def test_a_proof_that_takes_too_long_is_given_up():
     assert time.perf_counter() - start < 3
 
 
-def test_a_time_limit_ends_loops_without_calls_and_leaves_nothing_behind():
+def test_atime_limit_ends_loops_without_calls_and_leaves_nothing_behind():
     def spin():
         while True:
             pass
 
     for _ in range(3):
-        with pytest.raises(_TimeIsUp), _time_limit(0.02):
+        with pytest.raises(TimeIsUp), time_limit(0.02):
             spin()
     for _ in range(50):  # ending just as the time is up: the exception comes inside, or not at all
         try:
-            with _time_limit(0.002):
+            with time_limit(0.002):
                 time.sleep(0.0019)
-        except _TimeIsUp:
+        except TimeIsUp:
             pass
     time.sleep(0.01)
 

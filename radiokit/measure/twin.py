@@ -20,11 +20,10 @@ if TYPE_CHECKING:
 
     DIRECTION_SYMBOLS: tuple[sympy.Symbol, ...]
 
-__all__ = ["DIRECTION_SYMBOLS", "Twin", "proved_zero", "scaled_ulps", "ulps"]
+__all__ = ["DIRECTION_SYMBOLS", "Twin", "compiled", "scaled_ulps", "ulps", "working_precision"]
 
 _PRECISION = threading.RLock()  # mpmath's working precision is one for the whole process
 _EXPONENTS = 700  # digits between a square of the smallest float64 and 1, and some more
-_MAX_OPERATIONS = 400  # beyond this size, simplify() rarely comes back within the seconds allowed
 
 
 @functools.cache
@@ -92,12 +91,12 @@ class Twin:
 
         numbers = self._numbers(values)
         value = previous = mpmath.mpf(mpmath.nan)
-        with _PRECISION:
-            for precision in (digits + 10, digits + _EXPONENTS, 2 * (digits + _EXPONENTS)):
-                with mpmath.workdps(precision):
-                    previous, value = value, self._real(*numbers)
-                    if abs(value - previous) <= abs(value) * mpmath.mpf(10) ** -digits:
-                        return value
+        for precision in (digits + 10, digits + _EXPONENTS, 2 * (digits + _EXPONENTS)):
+            with working_precision(precision):
+                previous, value = value, self._real(*numbers)
+                if abs(value - previous) <= abs(value) * mpmath.mpf(10) ** -digits:
+                    return value
+        with working_precision(digits):
             if max(abs(value), abs(previous)) < mpmath.mpf(10) ** (-_EXPONENTS // 2):
                 return mpmath.mpf(0)  # rounding noise that shrinks with the precision
         raise RadiokitError(f"no {digits} digits of {self.expression} at {values}", values=values)
@@ -114,7 +113,7 @@ class Twin:
         import mpmath
 
         numbers = self._numbers(values)
-        with _PRECISION, mpmath.workdps(3 * digits + 10):
+        with working_precision(3 * digits + 10):
             step = mpmath.mpf(10) ** -digits
             total = mpmath.mpf(0)
             for index, number in enumerate(numbers):
@@ -157,7 +156,7 @@ class Twin:
         import mpmath
 
         symbols = (*self.arguments, *self.parameters)
-        value = mpmath.mpmathify(_compiled(self.expression, symbols)(*numbers))
+        value = mpmath.mpmathify(compiled(self.expression, symbols)(*numbers))
         if isinstance(value, mpmath.mpc):
             if abs(value.imag) > mpmath.sqrt(mpmath.eps) * abs(value.real):
                 raise RadiokitError(f"{self.expression} is complex at {numbers}", values=numbers)
@@ -166,14 +165,29 @@ class Twin:
 
 
 @functools.lru_cache(maxsize=256)
-def _compiled(expression: sympy.Expr, symbols: tuple[sympy.Symbol, ...]) -> Callable[..., Any]:
-    """Compile an expression to mpmath once."""
+def compiled(expression: sympy.Expr, symbols: tuple[sympy.Symbol, ...]) -> Callable[..., Any]:
+    """Return an expression as a function of mpmath numbers, compiled once; a Dirac delta is 0."""
     import sympy
 
-    compiled: Callable[..., Any] = sympy.lambdify(
+    function: Callable[..., Any] = sympy.lambdify(
         symbols, expression, modules=[{"DiracDelta": lambda _: 0}, "mpmath"], cse=True
     )
-    return compiled
+    return function
+
+
+@contextmanager
+def working_precision(digits: int) -> Iterator[None]:
+    """Work with this many digits in mpmath, and keep other threads from changing it meanwhile.
+
+    >>> import mpmath
+    >>> with working_precision(30):
+    ...     print(mpmath.pi * 1)
+    3.14159265358979323846264338328
+    """
+    import mpmath
+
+    with _PRECISION, mpmath.workdps(digits):
+        yield
 
 
 def _components(wi: npt.ArrayLike, wo: npt.ArrayLike) -> list[float]:
@@ -212,7 +226,7 @@ def ulps(value: npt.ArrayLike, exact: Any) -> Any:
         if not (np.isfinite(v) and np.isfinite(nearest)):
             result[index] = 0.0 if v == nearest else np.inf
             continue
-        with _PRECISION, mpmath.workdps(50):
+        with working_precision(50):
             unit = mpmath.mpf(float(np.spacing(abs(nearest))))
             result[index] = float(abs(mpmath.mpf(v) - truth) / unit)
     return result[()]
@@ -229,109 +243,3 @@ def scaled_ulps(value: npt.ArrayLike, exact: Any, condition: npt.ArrayLike) -> A
     # Where the truth is 0 or not finite the condition number means nothing, and excuses nothing.
     defined = np.isfinite(condition) & np.isfinite(count)
     return np.where(defined, count / np.maximum(1.0, np.where(defined, condition, 1.0)), count)[()]
-
-
-def proved_zero(expression: sympy.Expr, *, seconds: float = 5.0) -> bool:
-    """Return True when SymPy's normal forms reduce the expression to 0, given |wi| = |wo| = 1.
-
-    False means that no proof was found in time, or that a random point refutes the identity; it is no
-    proof of the contrary. Reciprocity is ``proved_zero(twin.swapped().expression - twin.expression)``.
-
-    Parameters
-    ----------
-    expression : sympy.Expr
-        ``DIRECTION_SYMBOLS`` in it are components of unit vectors.
-    seconds : float
-        Time after which the attempt is given up [s].
-
-    >>> x_i, y_i, z_i, *_ = _direction_symbols()
-    >>> proved_zero(x_i**2 + y_i**2 + z_i**2 - 1), proved_zero(x_i**2 + y_i**2 - 1)
-    (True, False)
-    """
-    import sympy
-
-    expression = sympy.sympify(expression)
-    if expression == 0:
-        return True
-    try:
-        with _time_limit(seconds):
-            if _refuted(expression):
-                return False
-            reduced = _on_unit_sphere(expression)
-            forms: list[Callable[[Any], Any]] = [sympy.expand, sympy.cancel, sympy.factor, sympy.simplify]
-            for form in forms:
-                if form is not sympy.expand and sympy.count_ops(reduced) > _MAX_OPERATIONS:
-                    break
-                if reduced == 0 or form(reduced) == 0:
-                    return True
-    except (_TimeIsUp, sympy.PolynomialError):
-        return False
-    return False
-
-
-def _on_unit_sphere(expression: sympy.Expr) -> sympy.Expr:
-    """Replace z² by 1 − x² − y² for both directions, from the innermost polynomials outwards."""
-    import sympy
-
-    x_i, y_i, z_i, x_o, y_o, z_o = symbols = _direction_symbols()
-
-    def reduce(part: sympy.Expr) -> sympy.Expr:
-        for x, y, z in ((x_i, y_i, z_i), (x_o, y_o, z_o)):
-            part = sympy.rem(part, x**2 + y**2 + z**2 - 1, z) if part.has(z) else part
-        return sympy.expand(part)
-
-    def is_polynomial(part: sympy.Expr) -> bool:
-        return isinstance(part, sympy.Add) and part.has(*symbols) and part.is_polynomial(*symbols)
-
-    return expression.replace(is_polynomial, reduce)
-
-
-def _refuted(expression: sympy.Expr) -> bool:
-    """Return whether the expression is clearly not 0 at some point with |wi| = |wo| = 1."""
-    import mpmath
-
-    directions = _direction_symbols()
-    others = tuple(sorted(expression.free_symbols - set(directions), key=str))
-    rng = np.random.default_rng(0)
-    function = _compiled(expression, directions + others)
-    for _ in range(4):
-        with _PRECISION, mpmath.workdps(50):
-            pairs = [[mpmath.mpf(x) for x in rng.uniform(0.1, 1.0, 3)] for _ in range(2)]
-            unit = [x / mpmath.norm(pair) for pair in pairs for x in pair]
-            try:
-                numbers = map(mpmath.mpf, rng.uniform(0.1, 0.9, len(others)))
-                value = mpmath.mpmathify(function(*unit, *numbers))
-            except (ArithmeticError, NameError, TypeError, ValueError):
-                return False
-            if mpmath.isfinite(value) and abs(value) > mpmath.mpf(10) ** -25:
-                return True
-    return False
-
-
-class _TimeIsUp(BaseException):
-    """Not an Exception, so that no handler inside SymPy swallows it."""
-
-
-@contextmanager
-def _time_limit(seconds: float) -> Iterator[None]:
-    """Raise ``_TimeIsUp`` in this thread, whatever Python code it runs, once the time has run out."""
-    import ctypes
-
-    thread, gate = ctypes.c_ulong(threading.get_ident()), threading.Lock()
-    inside = True
-
-    def interrupt() -> None:
-        with gate:
-            if inside:
-                ctypes.pythonapi.PyThreadState_SetAsyncExc(thread, ctypes.py_object(_TimeIsUp))
-
-    timer = threading.Timer(seconds, interrupt)
-    timer.daemon = True
-    timer.start()
-    try:
-        yield
-    finally:
-        with gate:
-            inside = False
-            ctypes.pythonapi.PyThreadState_SetAsyncExc(thread, None)  # what is raised but not yet seen
-        timer.cancel()
