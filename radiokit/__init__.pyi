@@ -12,6 +12,8 @@ from .contracts.emitter import Emitter as Emitter
 from .contracts.emitter import emitter as emitter
 from .contracts.emitter import list_emitters as list_emitters
 from .contracts.parameters import parameter as parameter
+from .faces.plots.lobe import save_lobe as save_lobe
+from .faces.plots.lobe import show_lobe as show_lobe
 from .facts import directions as directions
 from .facts import errors as errors
 from .facts.estimate import Estimate as Estimate

@@ -334,3 +334,10 @@ def test_tagged_values_survive_pickling():
         _ = again == M("5 W/m^2")
     with pytest.raises(TypeError, match="unhashable"):
         hash(again)
+
+
+def test_a_quantity_prints_as_text_and_as_a_table():
+    radiance = quantity("radiance")
+    assert str(radiance).splitlines()[0] == "radiance"
+    assert "W/(m^2 sr)" in str(radiance)
+    assert "энергетическая яркость" in radiance._repr_html_()

@@ -39,18 +39,23 @@ class Registry(Generic[Model]):
                 if cls.__module__ == module.__name__ and issubclass(cls, self.base):
                     self._add(found, cls, module.__name__)
         for point in entry_points(group=self.group):
-            self._add(found, point.load(), point.value)
+            try:
+                cls = point.load()
+            except Exception as error:
+                raise RadiokitError(f"the {self.kind} {point.value} cannot be loaded: {error}") from error
+            self._add(found, cls, point.value)
         return dict(sorted(found.items()))
 
     def _add(self, found: dict[str, type[Model]], cls: Any, where: str) -> None:
         if not (inspect.isclass(cls) and issubclass(cls, self.base)):
             raise RadiokitError(f"{where} is no {self.base.__name__}", where=where)
-        name = getattr(cls, "name", "")
+        model: Any = cls
+        name = model.name
         if not name:
             raise RadiokitError(f"{where} gives no name: set the class attribute 'name'", where=where)
         if name in found:
             raise RadiokitError(f"two models are called {name!r}: {found[name]} and {cls}", name=name)
-        found[name] = cls
+        found[name] = model
 
     def names(self) -> list[str]:
         """Return the names, sorted."""

@@ -10,6 +10,7 @@ import re
 import unicodedata
 from dataclasses import dataclass
 from functools import cache
+from html import escape
 from typing import TYPE_CHECKING, Any, Literal
 
 from radiokit.facts.errors import ParameterError, QuantityKindError, UnknownNameError
@@ -117,6 +118,30 @@ class Quantity:
             else ""
         )
         return f"in {self.unit}{hint}"
+
+    def _facts(self) -> list[tuple[str, str]]:
+        rows = [
+            ("symbol", self.symbol),
+            ("unit", self.unit),
+            ("kind", self.kind),
+            ("Russian", self.russian),
+            ("definition", self.definition),
+            ("meaning", self.meaning),
+            ("twin", self.twin),
+            ("spectral", self.spectral),
+            ("source", self.source.cite()),
+        ]
+        return [(name, text) for name, text in rows if text]
+
+    def __str__(self) -> str:
+        return "\n".join([self.english, *(f"  {name:<11}{text}" for name, text in self._facts())])
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f'<tr><th>{name}</th><td style="text-align:left">{escape(text)}</td></tr>'
+            for name, text in self._facts()
+        )
+        return f"<table><caption>{escape(self.english)}</caption><tbody>{rows}</tbody></table>"
 
     def to_json(self) -> dict[str, Any]:
         """Return the term as JSON-ready data."""

@@ -20,7 +20,13 @@ __all__ = ["FURNACES", "Line", "draw_work_precision", "work_precision"]
 FURNACES = ("ggx-0.3-in-furnace-at-60deg", "ggx-0.05-in-furnace-at-89deg")
 """An easy furnace and a hard one: a narrow lobe at grazing incidence."""
 
-STYLES = (("#0b6e4f", "o"), ("#999999", "s"), ("#1f5fbf", "^"), ("#c8553d", "v"), ("#8e44ad", "D"))
+STYLES = {
+    "slope-space rule": ("#0b6e4f", "o"),
+    "Gauss-Legendre in cosθ × φ": ("#999999", "s"),
+    "Monte Carlo, BSDF-sampled": ("#1f5fbf", "^"),
+    "Monte Carlo, light-sampled": ("#c8553d", "v"),
+    "balance heuristic": ("#8e44ad", "D"),
+}
 SIZES = (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256)
 SAMPLES = tuple(4**k for k in range(3, 9))
 SEEDS = 8
@@ -81,7 +87,8 @@ def draw_work_precision(path: Path, *, names: Sequence[str] = FURNACES, seed: in
 
 
 def _draw_panel(axes: Any, name: str, seed: int) -> None:
-    for line, (colour, marker) in zip(work_precision(name, seed=seed), STYLES, strict=False):
+    for line in work_precision(name, seed=seed):
+        colour, marker = STYLES[line.method]
         milliseconds = np.multiply(1e3, line.seconds)
         error = np.maximum(line.error, FLOOR)
         axes.loglog(milliseconds, error, marker=marker, ms=4, lw=1.2, color=colour, label=line.method)

@@ -111,7 +111,7 @@ CASES: tuple[Case, ...] = (
         shading_case(
             name=f"ggx-1-in-furnace-at-{theta}deg",
             title=f"GGX, α = 1, in a white furnace at {theta}°",
-            setup=_setup("GGX with α = 1, height-correlated Smith masking and Fresnel factor 1,", theta),
+            setup=_setup("GGX with α = 1, height-correlated Smith masking and Fresnel factor 1", theta),
             exact=_ggx_one(theta),
             derivation=_GGX_ONE,
             source=GGX.SOURCE,
@@ -125,7 +125,7 @@ CASES: tuple[Case, ...] = (
             name=f"ggx-{alpha:g}-in-furnace-at-{theta}deg",
             title=f"GGX, α = {alpha:g}, in a white furnace at {theta}°",
             setup=_setup(
-                f"GGX with α = {alpha:g}, height-correlated Smith masking and Fresnel factor 1,", theta
+                f"GGX with α = {alpha:g}, height-correlated Smith masking and Fresnel factor 1", theta
             ),
             exact=exact,
             derivation=_GGX_NUMBER + digits,
