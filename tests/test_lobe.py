@@ -275,6 +275,12 @@ def test_an_unknown_backend_is_named() -> None:
         show_lobe(lambert, theta=0.5, backend="vr")
 
 
+def test_a_view_that_turns_names_the_extra_that_it_needs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "trame", None)
+    with pytest.raises(MissingExtraError, match=r"needs trame: pip install 'radiokit\[viz\]'"):
+        show_lobe(lambert, theta=0.5, backend="html")
+
+
 @pytest.mark.parametrize("draw", [save_lobe, show_lobe])
 def test_without_pyvista_the_extra_is_named(
     draw: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

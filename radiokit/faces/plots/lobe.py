@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -109,12 +110,12 @@ def show_lobe(
     if backend not in ("trame", "html", "client", "server"):
         raise ParameterError("backend", backend, "'static', 'trame', 'html', 'client' or 'server'")
     require_pyvista(_TASK)
+    if find_spec("trame") is None:
+        raise MissingExtraError("turning a lobe in a notebook", "trame", "viz")
     with offscreen():
         plotter = lobe_scene(f, theta, phi, cosine, scale, decades, resolution, size)
-        try:
-            return plotter.show(jupyter_backend=backend, return_viewer=True)
-        except ImportError:
-            raise MissingExtraError("turning a lobe in a notebook", "trame", "viz") from None
+        plotter.notebook = True
+        return plotter.show(jupyter_backend=backend, return_viewer=True)
 
 
 def _picture(f: Any, *options: Any) -> Any:
