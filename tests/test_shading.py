@@ -28,6 +28,7 @@ from radiokit.measure.lune import lune
 from radiokit.measure.statistics import binomial_interval, sidak
 from radiokit.measure.warps import UniformCone
 from radiokit.worlds.planning import METHODS
+from radiokit.worlds.scene import irradiance
 from radiokit.worlds.shading import explain, shade
 
 SAMPLED = ("mc-bsdf", "mc-light", "mis")
@@ -336,6 +337,42 @@ def test_what_does_not_converge_says_so():
     assert auto.note
     truth = shade(checkers, Constant(), (0, 0, 1), method="mis", samples=200_000, rng=4)
     assert abs(auto.value - truth.value) <= 4 * (auto.error + truth.error)
+
+
+def setting_sun(theta_deg, half_angle):
+    """Irradiance of a cone of radiance 5 at ``theta_deg``, in rings that the horizon clips."""
+    theta = math.radians(theta_deg)
+    n = 100_000
+    a = (np.arange(n) + 0.5) * half_angle / n
+    p, q = math.cos(theta) * np.cos(a), math.sin(theta) * np.sin(a)
+    edge = np.arccos(np.clip(-p / q, -1, 1))
+    return 5 * half_angle / n * np.sin(a) @ (2 * (p * edge + q * np.sin(edge)))
+
+
+@pytest.mark.parametrize("half_angle", [0.2, 1.5])
+@pytest.mark.parametrize("theta_deg", [60, 80, 85, 90, 95, 101])
+def test_bounds_hold_where_the_horizon_cuts_the_light(theta_deg, half_angle):
+    """Product rules agree here by chance, on values that are wrong by 27 times their bound."""
+    light = Sun(half_angle=half_angle, direction=at(theta_deg, 0.3))
+    truth = setting_sun(theta_deg, half_angle)
+    for rtol in (1e-2, 1e-3, 1e-4):
+        arriving = irradiance(light, rtol=rtol)
+        assert arriving.converged
+        assert abs(arriving.value - truth) <= arriving.error + 1e-8 * truth
+        found = shade(Lambert(), light, (0, 0, 1), method="quadrature", rtol=rtol)
+        assert abs(found.value - truth / np.pi) <= found.error + 1e-8 * truth
+
+
+def test_a_material_that_is_not_finite_is_named():
+    def broken(wi, wo):
+        return np.where(wi[:, 2] > 0.99, np.nan, 1.0)
+
+    for light in (Point(position=(0, 0, 1), intensity=1), Constant()):
+        with pytest.raises(RadiokitError, match="nan"):
+            shade(broken, light, (0, 0, 1))
+        if not light.delta:
+            with pytest.raises(RadiokitError, match="nan"):
+                shade(broken, light, (0, 0, 1), method="mis", samples=1000, rng=1)
 
 
 # --- statistics ---

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -17,7 +18,7 @@ from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.quadrature import box
 
-__all__ = ["Receiver", "check_emitter", "irradiance", "solid_angle"]
+__all__ = ["Receiver", "check_emitter", "irradiance", "over_light", "solid_angle"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -114,14 +115,32 @@ def irradiance(
     def arriving(u: FloatArray) -> FloatArray:
         wi, density = light.sample(u, receiver.origin)
         cosine = np.maximum(wi @ receiver.axis, 0.0)
-        return _over(light.radiance_from(wi, receiver.origin) * cosine, density)
+        value = light.radiance_from(wi, receiver.origin) * cosine
+        return np.divide(value, density, out=np.zeros_like(value), where=density > 0)
 
-    return box(arriving, (0.0, 0.0), (1.0, 1.0), rtol=rtol)
+    return over_light(arriving, light, receiver, rtol)
 
 
-def _over(value: FloatArray, density: FloatArray) -> FloatArray:
-    """Divide by a density, 0 where it is 0."""
-    return np.divide(value, density, out=np.zeros_like(value), where=density > 0)
+def over_light(
+    integrand: Callable[[FloatArray], Any], light: Emitter, receiver: Receiver, rtol: float
+) -> Estimate:
+    """Integrate over the square from which a light is sampled, aware of the kink that its setting makes."""
+    kinks = crosses_horizon(light, receiver)
+    # Adaptive cubature stops as soon as it is near the tolerance: aim below it, then judge by it.
+    aim = rtol / 4 if kinks else rtol
+    found = box(integrand, (0.0, 0.0), (1.0, 1.0), rtol=aim, kinks=kinks)
+    converged = bool(np.all(found.error <= rtol * np.abs(found.value)))
+    note = "" if converged else found.note
+    return replace(found, method=f"{found.method} over the light", converged=converged, note=note)
+
+
+def crosses_horizon(light: Emitter, receiver: Receiver) -> bool:
+    """Return whether a light that is sampled lies on both sides of the receiver's horizon."""
+    x = np.linspace(0.0, 1.0, 65)
+    grid = np.stack(np.meshgrid(x, x, indexing="ij"), axis=-1).reshape(-1, 2)
+    towards, _ = light.sample(grid, receiver.origin)
+    height = towards @ receiver.axis
+    return bool(np.any(height > 0) and np.any(height < 0))
 
 
 def solid_angle(emitter: Emitter, *, position: npt.ArrayLike = (0.0, 0.0, 0.0)) -> Estimate:

@@ -14,13 +14,13 @@ import numpy.typing as npt
 
 from radiokit.contracts.bsdf import BSDF
 from radiokit.contracts.emitter import Emitter
-from radiokit.facts.errors import RadiokitError
+from radiokit.facts.errors import NonFiniteError, RadiokitError
 from radiokit.facts.estimate import Estimate
 from radiokit.facts.source import Source
 from radiokit.measure.lune import lune
 from radiokit.measure.montecarlo import mean
-from radiokit.measure.quadrature import box, hemisphere
-from radiokit.worlds.scene import Receiver
+from radiokit.measure.quadrature import hemisphere
+from radiokit.worlds.scene import Receiver, over_light
 
 __all__ = ["DELTA_LIGHT", "DELTA_LOBES", "SMOOTH", "Part", "Term"]
 
@@ -114,6 +114,10 @@ class Term:
             return self.zero("the light is below the horizon")
         wi, arriving = wi[above], normal_irradiance[above]
         values = self.f.evaluate(wi, np.broadcast_to(self.wo, wi.shape))
+        if not np.all(np.isfinite(values)):
+            row = int(np.argwhere(~np.isfinite(values))[0][0])
+            where = f"wi = {tuple(wi[row].tolist())}, wo = {tuple(self.wo.tolist())}"
+            raise NonFiniteError(f"{self.f!r} is {values[row]} at {where}", value=values[row], at=wi[row])
         total = _times(values, arriving * wi[:, 2]).sum(axis=0)
         # A direction is known to a few eps, the cosine to that of 1, and a narrow lobe is steep.
         width = self.f.lobe_width() or 1e-2
@@ -160,7 +164,7 @@ class Term:
         a wrong value. A lattice in the squares of both the light and the material sees such a lobe.
         """
         start = time.perf_counter()
-        found = box(self._from_light, (0.0, 0.0), (1.0, 1.0), rtol=rtol)
+        found = over_light(self._from_light, self.light, self.receiver, rtol)
         values = self._both(_lattice(_GUARD))
         means = values.reshape(16, -1, *self.shape).mean(axis=1)
         guard, spread = means.mean(axis=0), means.std(axis=0, ddof=1) / np.sqrt(len(means))
@@ -170,7 +174,6 @@ class Term:
             found,
             evaluations=found.evaluations + 2 * _GUARD,
             seconds=time.perf_counter() - start,
-            method=f"{found.method} over the light",
         )
         if np.any(missed):
             note = f"a lattice over light and lobe finds {guard}: the rules missed a narrow lobe"
