@@ -205,3 +205,21 @@ def test_an_accidental_agreement_of_two_rules_is_not_believed():
     found = converge([Rule(v) for v in (0.5, 1.0, 1.0)], 1e-9, 0.0)
     assert not found.converged
     assert found.error >= 0.005
+
+
+def test_bounds_hold_beside_jumps_wherever_they_run(rng):
+    """Discontinuous integrands, where no rule can be sure: nearly every bound holds, and none is far off."""
+    ratios = []
+    for k in range(60):
+        wo = spherical_to_cartesian(np.deg2rad(rng.uniform(0, 89.5)), rng.uniform(0, 6.28))
+        axis = spherical_to_cartesian(np.pi / 2 if k % 2 else rng.uniform(0, 0.7), rng.uniform(0, 6.28))
+        edge = 0.0 if k % 2 else rng.uniform(0.8, 0.95)
+        exact = np.pi / 2 if k % 2 else 2 * np.pi * (1 - edge)
+
+        def f(w, axis=axis, edge=edge, power=k % 2):
+            return (w @ axis > edge) * w[:, 2] ** power
+
+        for rtol, budget in ((1e-2, 20_000), (1e-3, 300_000), (1e-6, 300_000)):
+            ratios.append(hemisphere(f, wo=wo, rtol=rtol, max_evaluations=budget).ratio(exact))
+    assert np.quantile(ratios, 0.97) <= 1
+    assert max(ratios) < 6

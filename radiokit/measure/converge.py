@@ -21,8 +21,11 @@ Integrand = Callable[[FloatArray], Any]
 SAFETY = 2.0
 """Factor on the difference of two rules; the coarser one errs far more than the finer one."""
 
-MEMORY = 0.01
-"""Share of the last-but-one difference that the bound keeps, against an accidental agreement."""
+MEMORY = (0.0, 0.25, 0.75)
+"""Powers of the last three relative differences, by which the older ones weigh: d, d^1.25, d^1.75."""
+
+SMOOTH = 1e-5
+"""Relative agreement that rules for a smooth integrand reach and others reach only by a rare chance."""
 
 ROUNDING = 64 * float(np.finfo(float).eps)
 """Rounding of a weighted sum, relative to the sum of absolute terms; 21 eps is the most seen."""
@@ -65,26 +68,42 @@ def apply_rule(integrand: Integrand, points: FloatArray, weight: FloatArray) -> 
 def converge(rules: Iterable[RuleSum], rtol: float, atol: float) -> Estimate:
     """Go through ever finer rules until their differences bound the error as asked.
 
-    The bound is ``SAFETY`` times the last difference, never less than a hundredth of the one before, plus
-    rounding. Without convergence the finest rule is returned with ``converged=False``.
+    Rules for a smooth integrand agree ever better, each difference a small power of the one before, and
+    soon agree to ``SMOOTH``; rules for an integrand with jumps or kinks agree now and then by chance, but
+    hardly ever so well. Only agreement to ``SMOOTH`` or better is believed. Without it the error is the
+    spread of the last four values, and no less than one row of nodes' share of the whole.
     """
     start = time.perf_counter()
     values: list[Any] = []
-    evaluations = 0
+    evaluations, converged = 0, False
     error: Any = np.inf
     for found in rules:
         evaluations += found.points
         values.append(found.value)
         if len(values) < 3:
             continue
-        last, before = np.abs(values[-1] - values[-2]), np.abs(values[-2] - values[-3])
-        error = SAFETY * np.maximum(last, MEMORY * before) + ROUNDING * found.size
-        if np.all(error <= np.maximum(atol, rtol * np.abs(values[-1]))):
+        error = SAFETY * _credible(values, found.size) + ROUNDING * found.size
+        strict = np.maximum(min(atol, SMOOTH), min(rtol, SMOOTH) * found.size)
+        converged = bool(np.all(error <= strict))
+        if converged:
             break
-    else:
-        seconds = time.perf_counter() - start
-        return Estimate(values[-1], error, "truncation", evaluations, seconds, "", False)
-    return Estimate(values[-1], error, "truncation", evaluations, time.perf_counter() - start)
+        row = 2 * found.size / np.sqrt(found.points)
+        error = np.maximum(np.maximum(error, SAFETY * np.ptp(values[-4:], axis=0)), row)
+    if not converged and len(values) > 2:
+        converged = bool(np.all(error <= np.maximum(atol, rtol * np.abs(values[-1]))))
+    seconds = time.perf_counter() - start
+    return Estimate(values[-1], error, "truncation", evaluations, seconds, "", converged)
+
+
+def _credible(values: list[Any], size: Any) -> Any:
+    """Return the smallest difference from the truth that a sequence of values makes credible."""
+    differences = np.abs(np.diff(values[-4:], axis=0))[::-1]
+    shares = differences / np.where(size > 0, size, 1.0)
+    terms = [
+        d * np.minimum(share, 1.0) ** power
+        for d, share, power in zip(differences, shares, MEMORY, strict=False)
+    ]
+    return np.max(terms, axis=0)
 
 
 def adaptive(one: Integrand, two: Integrand, rtol: float, atol: float, budget: int) -> Estimate:

@@ -79,7 +79,7 @@ def hemisphere(
     """
     start = time.perf_counter()
     wo = np.asarray(wo, dtype=float)
-    spent, known = 0, width is not None
+    spent = 0
     if width is not None:
         core = width
     else:
@@ -89,10 +89,12 @@ def hemisphere(
             original = integrand
             integrand = lambda w: original(turned(w))  # noqa: E731
     sides = 1 if symmetric else 2
-    scan = None if known else _scan(integrand, wo, core)
-    spent += 0 if scan is None else SCAN
+    scan = None
+    if not symmetric and max_evaluations - spent > 2 * SCAN:
+        scan = _scan(integrand, wo, core)
+        spent += SCAN
     total = spent + np.cumsum([sides * n * n for n in SIZES])
-    sizes = [n for n, needed in zip(SIZES, total, strict=True) if needed <= max_evaluations] or [SIZES[0]]
+    sizes = SIZES[: max(3, np.searchsorted(total, max_evaluations, side="right"))]
 
     def rules() -> Iterator[RuleSum]:
         for n, factor in zip(sizes, WIDTHS, strict=False):
@@ -116,10 +118,14 @@ def hemisphere(
 
             return square
 
-        refined = adaptive(panels(1.0), panels(1.0 / 3.0), rtol, atol, budget // sides)
-        if np.all(refined.error <= found.error) or not refined.converged:
-            refined = replace(refined, evaluations=refined.evaluations * sides + found.evaluations)
+        refined = adaptive(panels(1.0), _bent(panels(1.0 / 3.0)), rtol, atol, budget // sides)
+        if not refined.converged:  # then the fixed rules are a third opinion
+            apart = np.abs(refined.value - found.value)
+            refined = replace(refined, error=np.maximum(refined.error, apart))
+        evaluations = refined.evaluations * sides + found.evaluations
+        if refined.converged or np.all(refined.error <= found.error):
             found, method = refined, "adaptive cubature in slope space"
+        found = replace(found, evaluations=evaluations)
     missed = _missed(found, scan)
     if missed > 0:
         note = "a scan of the hemisphere found mass that the rules missed"
