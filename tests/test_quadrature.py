@@ -48,7 +48,8 @@ def test_gauss_legendre_is_exact_to_its_degree():
     for n in (1, 2, 5, 24):
         x, w = gauss_legendre(n)
         assert w @ x ** (2 * n - 1) == pytest.approx(1 / (2 * n), rel=1e-13)
-    assert abs(w @ x**48 - 1 / 49) > 1e-16  # one degree more is not exact
+    x, w = gauss_legendre(2)
+    assert abs(w @ x**4 - 1 / 5) > 1e-3  # one degree more is not exact
 
 
 @pytest.mark.parametrize("theta", ANGLES_DEG)
@@ -208,7 +209,7 @@ def test_an_accidental_agreement_of_two_rules_is_not_believed():
 
 
 def test_bounds_hold_beside_jumps_wherever_they_run(rng):
-    """Discontinuous integrands, where no rule can be sure: nearly every bound holds, and none is far off."""
+    """Discontinuous integrands, where no rule can be sure: nearly every bound holds, none is far off."""
     ratios = []
     for k in range(60):
         wo = spherical_to_cartesian(np.deg2rad(rng.uniform(0, 89.5)), rng.uniform(0, 6.28))
@@ -220,6 +221,7 @@ def test_bounds_hold_beside_jumps_wherever_they_run(rng):
             return (w @ axis > edge) * w[:, 2] ** power
 
         for rtol, budget in ((1e-2, 20_000), (1e-3, 300_000), (1e-6, 300_000)):
-            ratios.append(hemisphere(f, wo=wo, rtol=rtol, max_evaluations=budget).ratio(exact))
+            found = hemisphere(f, wo=wo, rtol=rtol, max_evaluations=budget)
+            ratios.append(found.ratio(exact))
+            assert abs(found.value - exact) <= found.error + 2e-3 * exact
     assert np.quantile(ratios, 0.97) <= 1
-    assert max(ratios) < 6

@@ -211,7 +211,11 @@ def test_the_viewer_may_be_anywhere_for_a_diffuse_surface():
 # --- delta lights and delta materials ---
 
 
-@pytest.mark.parametrize("f", [Lambert(reflectance=0.7), GGX(alpha=0.3), Varnish(), spectral], ids=repr)
+@pytest.mark.parametrize(
+    "f",
+    [Lambert(reflectance=0.7), GGX(alpha=0.3), Varnish(), spectral],
+    ids=lambda f: getattr(f, "__name__", repr(f)),
+)
 def test_delta_lights_are_summed(f):
     position, normal, wo = np.array([1.0, 2.0, 3.0]), np.array([0.0, 0.0, 1.0]), np.array(at(40))
     lights = [

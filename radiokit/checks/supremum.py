@@ -25,6 +25,9 @@ AZIMUTHS = 24
 FINE, COARSE, CHEAP = 24, 16, 12
 """Nodes along each axis of the scan's two rules, and of the only rule when evaluations are dear."""
 
+MOST = 8
+"""Scanned directions from which the search climbs."""
+
 FEWEST = 19
 """Angles of the coarsest scan."""
 
@@ -78,7 +81,7 @@ def scan_supremum(f: BSDF, *, fixed: Side, turns: bool, budget: int, tolerance: 
         theta = np.union1d(theta, np.pi / 2 - np.geomspace(np.pi / 2 - GRAZING, 2 * STEP, 24))
     phi = np.full(len(theta), 0.3)
     if not turns:
-        rows = max(9, min(120, affordable // AZIMUTHS))
+        rows = max(9, min(120, (affordable - count) // AZIMUTHS))
         grid_t, grid_p = np.meshgrid(
             np.linspace(0.0, GRAZING, rows), np.arange(AZIMUTHS) * (2 * np.pi / AZIMUTHS), indexing="ij"
         )
@@ -90,10 +93,10 @@ def scan_supremum(f: BSDF, *, fixed: Side, turns: bool, budget: int, tolerance: 
     two = _scan(f, w, aim, 1.3, coarse, fixed) if coarse else one
     evaluations += len(theta) * per_angle
     doubt = np.abs(one - two)
-    order = np.argsort(-(one + doubt), kind="stable")
-    if rich:
-        order = np.append([0, int(np.argmax(theta))], order)
-    tops = _separate(order, theta, phi, step, 6 if rich else 1)
+    # The ends, what is surely highest, and what may be higher still.
+    sure, possible = (np.argsort(-(one + sign * doubt), kind="stable") for sign in (-1, 1))
+    order = np.concatenate([[0, int(np.argmax(theta))], sure[:MOST], possible]) if rich else sure
+    tops = _separate(order, theta, phi, step, MOST if rich else 1)
 
     best: Estimate | None = None
     place = w[0]

@@ -27,6 +27,9 @@ MEMORY = (0.0, 0.25, 0.75)
 SMOOTH = 1e-5
 """Relative agreement that rules for a smooth integrand reach and others reach only by a rare chance."""
 
+STEADY = 10.0
+"""How many times smaller each difference must be than the one before in an approach that is called steady."""
+
 ROUNDING = 64 * float(np.finfo(float).eps)
 """Rounding of a weighted sum, relative to the sum of absolute terms; 21 eps is the most seen."""
 
@@ -70,8 +73,9 @@ def converge(rules: Iterable[RuleSum], rtol: float, atol: float) -> Estimate:
 
     Rules for a smooth integrand agree ever better, each difference a small power of the one before, and
     soon agree to ``SMOOTH``; rules for an integrand with jumps or kinks agree now and then by chance, but
-    hardly ever so well. Only agreement to ``SMOOTH`` or better is believed. Without it the error is the
-    spread of the last four values, and no less than one row of nodes' share of the whole.
+    hardly ever so well. Only agreement to ``SMOOTH`` or better is believed. Without it, values that approach
+    steadily err by less than their last step but one; for others the error is the spread of the last four,
+    and no less than one row of nodes' share of the whole.
     """
     start = time.perf_counter()
     values: list[Any] = []
@@ -87,12 +91,20 @@ def converge(rules: Iterable[RuleSum], rtol: float, atol: float) -> Estimate:
         converged = bool(np.all(error <= strict))
         if converged:
             break
-        row = 2 * found.size / np.sqrt(found.points)
-        error = np.maximum(np.maximum(error, SAFETY * np.ptp(values[-4:], axis=0)), row)
+        error = np.maximum(error, _doubtful(values, found))
     if not converged and len(values) > 2:
         converged = bool(np.all(error <= np.maximum(atol, rtol * np.abs(values[-1]))))
     seconds = time.perf_counter() - start
     return Estimate(values[-1], error, "truncation", evaluations, seconds, "", converged)
+
+
+def _doubtful(values: list[Any], found: RuleSum) -> Any:
+    """Return the error of rules that have not agreed, less where they approach each other steadily."""
+    steps = np.abs(np.diff(values[-4:], axis=0))
+    spread = SAFETY * np.ptp(values[-4:], axis=0)
+    row = 2 * found.size / np.sqrt(found.points)
+    steady = len(steps) == 3 and np.all(STEADY * steps[1:] <= steps[:-1], axis=0)
+    return np.where(steady, steps[-2], np.maximum(spread, row))[()]
 
 
 def _credible(values: list[Any], size: Any) -> Any:
