@@ -7,7 +7,7 @@ import pytest
 
 from radiokit.checks.energy import energy
 from radiokit.checks.judge import check
-from radiokit.checks.probes import isotropic, kronecker, pairs, polar
+from radiokit.checks.probes import isotropic, pairs, polar
 from radiokit.checks.reciprocity import reciprocity
 from radiokit.checks.sampling import sampling
 from radiokit.checks.values import values
@@ -15,6 +15,7 @@ from radiokit.contracts.blackbox import as_bsdf
 from radiokit.facts.directions import spherical_to_cartesian
 from radiokit.facts.errors import ParameterError, UnknownNameError
 from radiokit.facts.verdict import Outcome
+from radiokit.measure.lattice import kronecker
 
 
 def lambert(albedo):

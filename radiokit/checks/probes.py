@@ -10,8 +10,9 @@ import numpy.typing as npt
 
 from radiokit.contracts.bsdf import BSDF
 from radiokit.facts.directions import reflect
+from radiokit.measure.lattice import kronecker
 
-__all__ = ["GRAZING", "channels", "isotropic", "kronecker", "pairs", "polar", "seconds_per_evaluation"]
+__all__ = ["GRAZING", "channels", "isotropic", "pairs", "polar", "seconds_per_evaluation"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -19,23 +20,6 @@ GRAZING = np.deg2rad(89.99)
 """The largest polar angle at which the judges integrate [rad]."""
 
 _SMALLEST_COSINE = float(np.cos(np.deg2rad(89.9999)))
-
-
-def kronecker(count: int, dimensions: int) -> FloatArray:
-    """Return ``count`` low-discrepancy points in the unit cube: the additive recurrence R_d.
-
-    The multipliers are powers of the reciprocal of the root of x^(d+1) = x + 1, the generalised golden
-    ratio. Any further points continue the same sequence.
-
-    >>> kronecker(2, 2).round(3).tolist()
-    [[0.255, 0.07], [0.01, 0.64]]
-    """
-    root = 1.5
-    for _ in range(64):
-        root = (1 + root) ** (1 / (dimensions + 1))
-    steps = root ** -np.arange(1.0, dimensions + 1)
-    points: FloatArray = (0.5 + np.arange(1, count + 1)[:, None] * steps) % 1.0
-    return points
 
 
 def polar(cosine: npt.ArrayLike, phi: npt.ArrayLike) -> FloatArray:

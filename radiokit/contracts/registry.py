@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import inspect
 import pkgutil
+from collections.abc import Callable
 from functools import cached_property
 from importlib.metadata import entry_points
 from typing import Any, Generic, TypeVar
@@ -80,6 +81,16 @@ class Registry(Generic[Model]):
                 return cls
         known = ", ".join(cls.__name__ for cls in self.classes.values())
         raise AttributeError(f"{self.package} has no class {name!r}; it has: {known}")
+
+    def lazy_names(self) -> tuple[Callable[[str], type[Model]], Callable[[], list[str]]]:
+        """Return a package's ``__getattr__`` and ``__dir__``, which find the classes in its files."""
+
+        def find(name: str) -> type[Model]:
+            if name.startswith("_"):
+                raise AttributeError(name)
+            return self.by_class_name(name)
+
+        return find, lambda: sorted(cls.__name__ for cls in self.classes.values())
 
     def make(self, name: str, parameters: dict[str, Any]) -> Model:
         """Return the model called ``name`` with these parameters."""

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.converge import GK21, Integrand, RuleSum, adaptive, apply_rule, converge
+from radiokit.measure.lattice import kronecker
 from radiokit.measure.slope import find_lobe, gauss_legendre, mirrored, slope_map, slope_rule, turned
 
 __all__ = ["box", "hemisphere"]
@@ -145,8 +146,7 @@ def hemisphere(
 
 def _scan(integrand: Integrand, wo: FloatArray, width: float) -> tuple[Any, Any]:
     """Return a rough integral and its uncertainty from points spread evenly, which see between the nodes."""
-    index = np.arange(1.0, SCAN + 1)
-    x, s = (0.5 + index * 0.7548776662466927) % 1.0, (0.5 + index * 0.5698402909980532) % 1.0
+    x, s = kronecker(SCAN, 2).T
     wi, weight, _ = slope_map(wo, width, x, s)
     wi[::2] = mirrored(wi[::2], wo)
     terms = (np.asarray(integrand(wi), dtype=float).T * weight).T

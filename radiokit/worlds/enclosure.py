@@ -15,6 +15,7 @@ from radiokit.facts.directions import dot, frame, spherical_to_cartesian, to_loc
 from radiokit.facts.errors import ParameterError, RadiokitError
 from radiokit.facts.estimate import Estimate
 from radiokit.facts.source import Source
+from radiokit.measure.lattice import kronecker
 from radiokit.measure.montecarlo import mean
 from radiokit.worlds.planning import check_direction
 
@@ -97,7 +98,7 @@ def enclosure_radiance(
 
 def _absorbs_nothing(f: BSDF) -> bool:
     """Return whether every sample of every probed direction keeps all of its weight."""
-    u = (np.arange(64.0)[:, None] * (0.7548776662466927, 0.5698402909980532) + 0.5) % 1.0
+    u = kronecker(64, 2)
     for wo in _PROBE:
         _, weight = f.sample(u, np.broadcast_to(wo, (len(u), 3)))
         if np.any(np.mean(weight, axis=0) < 1 - 1e-12):

@@ -17,6 +17,7 @@ from radiokit.contracts.emitter import Emitter
 from radiokit.facts.errors import NonFiniteError, RadiokitError
 from radiokit.facts.estimate import Estimate
 from radiokit.facts.source import Source
+from radiokit.measure.lattice import kronecker
 from radiokit.measure.lune import lune
 from radiokit.measure.montecarlo import mean
 from radiokit.measure.quadrature import hemisphere
@@ -165,7 +166,7 @@ class Term:
         """
         start = time.perf_counter()
         found = over_light(self._from_light, self.light, self.receiver, rtol)
-        values = self._both(_lattice(_GUARD))
+        values = self._both(kronecker(_GUARD, 4))
         means = values.reshape(16, -1, *self.shape).mean(axis=1)
         guard, spread = means.mean(axis=0), means.std(axis=0, ddof=1) / np.sqrt(len(means))
         gap = np.abs(found.value - guard)
@@ -244,17 +245,6 @@ class Term:
         if np.any(use):
             result[use] = values
         return result
-
-
-def _lattice(count: int) -> FloatArray:
-    """Return the first points (count, 4) of the additive recurrence with the best generalised golden ratio.
-
-    Source: Roberts (2018), The unreasonable effectiveness of quasirandom sequences.
-    """
-    ratio = 1.1673039782614187  # the real root of x⁵ = x + 1
-    step = ratio ** -np.arange(1.0, 5.0)
-    points: FloatArray = np.mod(0.5 + np.arange(1, count + 1)[:, None] * step, 1.0)
-    return points
 
 
 def _times(values: FloatArray, factor: FloatArray) -> FloatArray:
