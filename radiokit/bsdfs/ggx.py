@@ -161,6 +161,11 @@ class GGX(BSDF):
             return 1.0
         return fresnel.conductor(np.minimum(0.5 * np.sqrt(length2), 1.0), self.eta, self.k)
 
+    @property
+    def smooth(self) -> bool:
+        """True."""
+        return True
+
     def lobe_width(self) -> float:
         """Return α."""
         return self.alpha

@@ -68,6 +68,11 @@ class Lambert(BSDF):
         """Return ``wi``, cosine-distributed, and ``weight = ρ``."""
         return _WARP.sample(u), np.where(wo[..., 2] > 0.0, self.reflectance, 0.0)
 
+    @property
+    def smooth(self) -> bool:
+        """True."""
+        return True
+
     def lobe_width(self) -> float:
         """Return 1, the width of a diffuse lobe."""
         return 1.0

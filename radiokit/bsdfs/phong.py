@@ -99,6 +99,11 @@ class Phong(BSDF):
         lit = (cosine > 0.0) & (np.minimum(wi[..., 2], wo[..., 2]) > 0.0)
         return np.where(lit, lobe, 0.0)
 
+    @property
+    def smooth(self) -> bool:
+        """Whether cosⁿα ends softly enough where the lobe does: not for a small exponent."""
+        return self.exponent >= 4.0
+
     def lobe_width(self) -> float:
         """Return the median slope of the half vectors, tan(α/2) for half the lobe's flux within 2α."""
         log_cosine = -np.log(2.0) / (self.exponent + 1.0)

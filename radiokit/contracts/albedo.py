@@ -131,6 +131,7 @@ def directional_albedo(
         rtol=rtol,
         atol=atol,
         symmetric=model.isotropic,
+        smooth=model.smooth,
         max_evaluations=max_evaluations,
     )
     delta = delta_albedo(model, fixed_direction)

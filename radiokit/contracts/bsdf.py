@@ -100,6 +100,14 @@ class BSDF(ABC):
         """Return the delta lobes for ``wo`` (N, 3); none by default."""
         return ()
 
+    @property
+    def smooth(self) -> bool:
+        """Whether f has no kink or jump up to the horizon, so that quadrature may believe rules that agree.
+
+        False unless a model says otherwise: then agreement must be closer, and is doubted longer.
+        """
+        return False
+
     def lobe_width(self) -> float | None:
         """Return the lobe's width in the slope space of half vectors, or None if it is unknown.
 

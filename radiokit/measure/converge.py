@@ -18,7 +18,7 @@ __all__ = ["BLOCK", "GK21", "Integrand", "RuleSum", "adaptive", "apply_rule", "c
 FloatArray = npt.NDArray[np.float64]
 Integrand = Callable[[FloatArray], Any]
 
-SAFETY = 2.0
+SAFETY = 3.0
 """Factor on the difference of two rules; the coarser one errs far more than the finer one."""
 
 MEMORY = (0.0, 0.25, 0.75)
@@ -26,9 +26,6 @@ MEMORY = (0.0, 0.25, 0.75)
 
 SMOOTH = 1e-5
 """Relative agreement that rules for a smooth integrand reach and others reach only by a rare chance."""
-
-STEADY = 10.0
-"""How many times smaller each difference must be than the one before in an approach that is called steady."""
 
 ROUNDING = 64 * float(np.finfo(float).eps)
 """Rounding of a weighted sum, relative to the sum of absolute terms; 21 eps is the most seen."""
@@ -68,14 +65,14 @@ def apply_rule(integrand: Integrand, points: FloatArray, weight: FloatArray) -> 
     return RuleSum(value, size, len(points))
 
 
-def converge(rules: Iterable[RuleSum], rtol: float, atol: float) -> Estimate:
+def converge(rules: Iterable[RuleSum], rtol: float, atol: float, *, smooth: bool = False) -> Estimate:
     """Go through ever finer rules until their differences bound the error as asked.
 
     Rules for a smooth integrand agree ever better, each difference a small power of the one before, and
     soon agree to ``SMOOTH``; rules for an integrand with jumps or kinks agree now and then by chance, but
-    hardly ever so well. Only agreement to ``SMOOTH`` or better is believed. Without it, values that approach
-    steadily err by less than their last step but one; for others the error is the spread of the last four,
-    and no less than one row of nodes' share of the whole.
+    hardly ever so well. Only agreement to ``SMOOTH`` or better is believed. Without it the error is the
+    spread of the last four values, and no less than one row of nodes' share of the whole. All this is left
+    out when the integrand is known to be ``smooth``.
     """
     start = time.perf_counter()
     values: list[Any] = []
@@ -87,11 +84,15 @@ def converge(rules: Iterable[RuleSum], rtol: float, atol: float) -> Estimate:
         if len(values) < 3:
             continue
         error = SAFETY * _credible(values, found.size) + ROUNDING * found.size
-        strict = np.maximum(min(atol, SMOOTH), min(rtol, SMOOTH) * found.size)
-        converged = bool(np.all(error <= strict))
+        if smooth:
+            enough = np.maximum(atol, rtol * np.abs(found.value))
+        else:
+            enough = np.maximum(min(atol, SMOOTH), min(rtol, SMOOTH) * found.size)
+        converged = bool(np.all(error <= enough))
         if converged:
             break
-        error = np.maximum(error, _doubtful(values, found))
+        if not smooth:
+            error = np.maximum(error, _doubtful(values, found))
     if not converged and len(values) > 2:
         converged = bool(np.all(error <= np.maximum(atol, rtol * np.abs(values[-1]))))
     seconds = time.perf_counter() - start
@@ -99,12 +100,9 @@ def converge(rules: Iterable[RuleSum], rtol: float, atol: float) -> Estimate:
 
 
 def _doubtful(values: list[Any], found: RuleSum) -> Any:
-    """Return the error of rules that have not agreed, less where they approach each other steadily."""
-    steps = np.abs(np.diff(values[-4:], axis=0))
+    """Return the error of rules that have not agreed."""
     spread = SAFETY * np.ptp(values[-4:], axis=0)
-    row = 2 * found.size / np.sqrt(found.points)
-    steady = len(steps) == 3 and np.all(STEADY * steps[1:] <= steps[:-1], axis=0)
-    return np.where(steady, steps[-2], np.maximum(spread, row))[()]
+    return np.maximum(spread, 2 * found.size / np.sqrt(found.points))
 
 
 def _credible(values: list[Any], size: Any) -> Any:

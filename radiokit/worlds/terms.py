@@ -154,7 +154,7 @@ class Term:
             return self._over_light(rtol)
         width = self.f.lobe_width()
         if not dome:
-            return hemisphere(self.reflected, wo=self.wo, width=width, rtol=rtol)
+            return hemisphere(self.reflected, wo=self.wo, width=width, rtol=rtol, smooth=self.f.smooth)
         zenith = self.receiver.to_local(dome[0])
         return lune(self.reflected, zenith, wo=self.wo, width=width, rtol=rtol)
 
