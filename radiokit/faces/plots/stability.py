@@ -85,12 +85,12 @@ def _draw_panel(axes: Any, results: Sequence[StabilityResult], name: str, right:
         axes.plot(ends, [place, place], color="#b8b8b8", lw=1.6, zorder=2, solid_capstyle="round")
         text = f"{result.kernel[name].digits:.0f} → {result.textbook[name].digits:.0f}"
         axes.text(1.01, place, text, transform=axes.get_yaxis_transform(), va="center", fontsize=7.5)
-    axes.text(1.01, -1.0, "digits", transform=axes.get_yaxis_transform(), va="bottom", fontsize=7.5)
+    axes.text(1.01, -1.0, "digits left", transform=axes.get_yaxis_transform(), va="bottom", fontsize=7.5)
     axes.set_xscale("log")
     axes.set_xlim(FLOOR / 3, 4 * right)
     _infinite(axes.xaxis, right)
     axes.set_title(name, fontsize=11)
-    axes.set_xlabel("worst error on the hard axis [ulps / condition number]", fontsize=9)
+    axes.set_xlabel("worst error [ulps / condition number]", fontsize=9)
     axes.grid(axis="x", which="major", lw=0.3)
     axes.tick_params(axis="y", length=0)
     for side in ("top", "right", "left"):
@@ -99,8 +99,8 @@ def _draw_panel(axes: Any, results: Sequence[StabilityResult], name: str, right:
 
 def _forms(result: StabilityResult, name: str) -> tuple[tuple[Any, str, str], ...]:
     return (
-        (result.textbook[name], TEXTBOOK, "the textbook's formula"),
         (result.kernel[name], KERNEL, "radiokit's kernel"),
+        (result.textbook[name], TEXTBOOK, "the textbook's formula"),
     )
 
 

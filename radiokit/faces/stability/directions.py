@@ -1,4 +1,4 @@
-"""Directions: angles, cones, lengths, frames and refraction, where directions nearly meet or nearly vanish."""
+"""Directions: angles, cones, lengths and frames, where directions nearly meet or nearly vanish."""
 
 from __future__ import annotations
 
@@ -24,13 +24,7 @@ _HIGHAM = Source(
     year=2002,
     title="Accuracy and Stability of Numerical Algorithms, 2nd edition",
     doi="10.1137/1.9780898718027",
-    equation="sections 1.7 (cancellation) and 27.5 (scaling against underflow)",
-)
-_SNELL = Source(
-    authors="Pharr, Jakob, Humphreys",
-    year=2023,
-    title="Physically Based Rendering, 4th edition",
-    equation="section 9.3.3",
+    equation="chapter 1 for cancellation, chapter 27 for underflow",
 )
 
 
@@ -124,29 +118,6 @@ def _identity_twin() -> Twin:
     return Twin(symbols[3], {}, symbols)
 
 
-def _refracted(component: int) -> Any:
-    def kernel(x: Any, z: Any, eta: Any) -> Any:
-        return directions.refract(_stack(x, 0.0 * x, z), eta=eta)[0][..., component]
-
-    return kernel
-
-
-def _refracted_twin(component: str) -> Any:
-    def twin() -> Twin:
-        import sympy
-
-        x, z, eta = symbols = sympy.symbols("x z eta", positive=True)
-        sine = x / sympy.sqrt(x**2 + z**2) / eta
-        return Twin(-sine if component == "x" else -sympy.sqrt((1 - sine) * (1 + sine)), {}, symbols)
-
-    return twin
-
-
-def _near_critical(distance: Any) -> tuple[Any, ...]:
-    sine = 0.75 * (1.0 - distance)
-    return sine, np.sqrt((1.0 - sine) * (1.0 + sine)), 0.75
-
-
 ROWS = (
     Row(
         name="angle-near-parallel",
@@ -161,8 +132,9 @@ ROWS = (
         kernel_form="atan2(|(a − b) × (a + b)| / 2, a·b)",
         textbook_form="acos(a·b / (|a| |b|))",
         lesson="The cosine of a small angle θ is 1 − θ²/2, and a float next to 1 is known to ε: everything "
-        "below θ = √ε is rounded away before acos sees it, and what rounds to more than 1 becomes NaN. The "
-        "cross product is proportional to the angle itself, and the difference a − b of near neighbours is exact.",
+        "below θ = √ε is rounded away before acos sees it, and a quotient that rounds to more than 1 "
+        "becomes NaN. The cross product is proportional to the angle itself, and the difference a − "
+        "b of near neighbours is exact.",
         source=_KAHAN,
     ),
     Row(
@@ -177,9 +149,9 @@ ROWS = (
         kernel_name="radiokit.facts.directions.angle_between",
         kernel_form="atan2(|(a − b) × (a + b)| / 2, a·b)",
         textbook_form="acos(a·b / (|a| |b|))",
-        lesson="Here the answer is about π, and still half of the digits go: acos has an infinite slope at −1, "
-        "so an error of ε in the cosine is one of √ε in the angle. A function is to be entered where its "
-        "slope is tame: atan2 of sine and cosine always is.",
+        lesson="Here the answer is about π, and still half of the digits go: acos has an infinite slope at "
+        "−1, so an error of ε in the cosine is one of √ε in the angle. A function is to be entered "
+        "where its slope is tame: atan2 of sine and cosine always is.",
         source=_KAHAN,
     ),
     Row(
@@ -198,8 +170,8 @@ ROWS = (
         kernel_name="radiokit.facts.directions.cartesian_to_spherical",
         kernel_form="atan2(hypot(x, y), z)",
         textbook_form="acos(z / |w|)",
-        lesson="z is 1 for every direction within √ε of the pole, so z alone cannot tell them apart. Their x and "
-        "y can, to the last digit: never ask a large component what a small one knows.",
+        lesson="z is 1 for every direction within √ε of the pole, so z alone cannot tell them apart. Their "
+        "x and y can, to the last digit: never ask a large component what a small one knows.",
         source=_HIGHAM,
     ),
     Row(
@@ -214,9 +186,9 @@ ROWS = (
         kernel_name="radiokit.facts.directions.cap_solid_angle",
         kernel_form="4π sin²(θ/2)",
         textbook_form="2π (1 − cos θ)",
-        lesson="1 − cos θ subtracts two numbers that agree in their leading digits; the difference is made of the "
-        "rounding of cos θ, and is 0 for θ below 10⁻⁸. The sun's solid angle loses five digits so. The identity "
-        "1 − cos θ = 2 sin²(θ/2) has nothing to subtract.",
+        lesson="1 − cos θ subtracts two numbers that agree in their leading digits; the difference is made "
+        "of the rounding of cos θ, and is 0 for θ below 10⁻⁸. The sun's solid angle loses five "
+        "digits so. The identity 1 − cos θ = 2 sin²(θ/2) has nothing to subtract.",
         source=_HIGHAM,
     ),
     Row(
@@ -231,8 +203,8 @@ ROWS = (
         kernel_name="radiokit.facts.directions.cap_half_angle",
         kernel_form="2 atan2(√Ω, √(4π − Ω))",
         textbook_form="acos(1 − Ω/2π)",
-        lesson="Adding a small Ω/2π to 1 keeps only those of its digits that reach above ε; acos cannot bring the "
-        "others back. The square roots take Ω as it is.",
+        lesson="Adding a small Ω/2π to 1 keeps only those of its digits that reach above ε; acos cannot "
+        "bring the others back. The square roots take Ω as it is.",
         source=_HIGHAM,
     ),
     Row(
@@ -248,9 +220,10 @@ ROWS = (
         kernel_name="radiokit.facts.directions.unit",
         kernel_form="v 2⁻ᵉ / |v 2⁻ᵉ| with e the exponent of the largest component",
         textbook_form="v / √(v·v)",
-        lesson="Squaring halves the range of exponents: components below 10⁻¹⁶² in float64, and already below "
-        "10⁻²³ in float32, have squares that underflow to 0, and 0/0 is NaN; long before, the squares are "
-        "denormal and their digits go one by one. Scaling by a power of two is exact and costs nothing.",
+        lesson="Squaring halves the range of exponents: components below 10⁻¹⁶² in float64, and already "
+        "below 10⁻²³ in float32, have squares that underflow to 0, and 0/0 is NaN; long before, the "
+        "squares are denormal and their digits go one by one. Scaling by a power of two is exact and "
+        "costs nothing.",
         source=_HIGHAM,
     ),
     Row(
@@ -268,9 +241,9 @@ ROWS = (
         kernel_name="radiokit.facts.directions.half_vector",
         kernel_form="(wi + wo), scaled by a power of two, over its length",
         textbook_form="(wi + wo) / |wi + wo|",
-        lesson="The sum is safe, though it cancels: subtracting near neighbours is exact (Sterbenz). Its length is "
-        "not, for the square of what is left underflows, and the half vector is 0/0. Cancellation only uncovers "
-        "errors made before; where there are none, it does no harm.",
+        lesson="The sum is safe, though it cancels: subtracting near neighbours is exact (Sterbenz). Its "
+        "length is not, for the square of what is left underflows, and the half vector is 0/0. "
+        "Cancellation only uncovers errors made before; where there are none, it does no harm.",
         source=_HIGHAM,
     ),
     Row(
@@ -285,43 +258,9 @@ ROWS = (
         kernel_name="radiokit.facts.directions.frame",
         kernel_form="a = −1/(sign z + z): the pole of the formula is always in the other hemisphere",
         textbook_form="a = 1/(1 + z), t = (1 − a x², −a x y, −x)",
-        lesson="1 + z cancels near z = −1 and is then divided by: the axes are neither of unit length nor at right "
-        "angles, and at −z itself they are NaN. No continuous frame covers the sphere; so two formulas, each "
-        "used in the hemisphere where it adds numbers of the same sign.",
+        lesson="1 + z cancels near z = −1 and is then divided by: the axes are neither of unit length nor "
+        "at right angles, and at −z itself they are NaN. No continuous frame covers the sphere; so "
+        "two formulas, each used in the hemisphere where it adds numbers of the same sign.",
         source=directions.FRAME_SOURCE,
-    ),
-    Row(
-        name="refract-near-normal",
-        title="Refraction near normal incidence",
-        axis="angle of incidence [rad]",
-        values=decades(-1, -15),
-        inputs=lambda theta: (np.sin(theta), np.cos(theta), np.array([1.5, 0.75])),
-        kernel=_refracted(0),
-        textbook=lambda m, x, z, eta: -m.sin(m.acos(z / m.sqrt(x * x + z * z))) / eta,
-        twin=_refracted_twin("x"),
-        kernel_name="radiokit.facts.directions.refract",
-        kernel_form="−(w − (w·n) n) / η, from the part of w along the surface",
-        textbook_form="sin θt = sin(acos(w·n)) / η",
-        lesson="Snell's law speaks of sines, and a program has the cosine w·n; near the normal it has forgotten the "
-        "sine. The part of w along the surface is the sine, and was there all the time.",
-        source=_SNELL,
-    ),
-    Row(
-        name="refract-near-critical",
-        title="Refraction near the critical angle (hard for every formula)",
-        axis="distance from the critical sine [1]",
-        values=decades(-1, -6),
-        inputs=_near_critical,
-        kernel=_refracted(2),
-        textbook=lambda m, x, z, eta: -m.sqrt(1 - (1 - z * z / (x * x + z * z)) / (eta * eta)),
-        twin=_refracted_twin("z"),
-        kernel_name="radiokit.facts.directions.refract",
-        kernel_form="√((n_t − n_i sin θ)(n_t + n_i sin θ)) / n_t",
-        textbook_form="cos θt = √(1 − (1 − cos²θ)/η²)",
-        lesson="A counterexample: both forms lose digits, and neither is to blame. The last bit of the index moves "
-        "the critical angle, so the answer itself is uncertain by that much: the condition number grows as one "
-        "over the distance, and divided by it the textbook's error is a few ulps.",
-        source=_SNELL,
-        fails=(),
     ),
 )

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from radiokit.bsdfs.phong import Phong
 from radiokit.faces.stability.row import Row, decades
 from radiokit.facts.source import Source
 from radiokit.measure.montecarlo import Moments
@@ -22,13 +23,6 @@ _CHAN = Source(
     title="Algorithms for computing the sample variance. The American Statistician 37(3)",
     doi="10.1080/00031305.1983.10483115",
     equation="the corrected two-pass algorithm, and the pairwise update",
-)
-_PHONG = Source(
-    authors="Arvo",
-    year=1995,
-    title="Applications of irradiance tensors to the simulation of non-Lambertian phenomena. SIGGRAPH 95",
-    doi="10.1145/218380.218467",
-    equation="the recurrence for moments of even order; here for a whole hemisphere",
 )
 
 
@@ -116,9 +110,10 @@ ROWS = (
         kernel_name="radiokit.measure.montecarlo.Moments",
         kernel_form="Σ(x − x̄)² − (Σ(x − x̄))²/n in a batch, pairwise between batches",
         textbook_form="(Σx² − (Σx)²/n) / (n − 1)",
-        lesson="Both sums are as large as n x̄², and their difference is the variance: with a mean of 10⁹ and a "
-        "spread of 10² fourteen of the digits of each are alike. The standard error of a Monte Carlo mean is then "
-        "noise, or the root of a negative number. Subtract the mean first: the differences are exact.",
+        lesson="Both sums are as large as n x̄², and their difference is the variance: with a mean of 10⁹ "
+        "and a spread of 10² thirteen of the digits of each are alike. The standard error of a Monte "
+        "Carlo mean is then noise, or the root of a negative number. Subtract the mean first: the "
+        "differences are exact.",
         source=_CHAN,
     ),
     Row(
@@ -133,9 +128,9 @@ ROWS = (
         kernel_name="radiokit.worlds.cases.furnace.phong_albedo",
         kernel_form="∫ cosᵐχ dχ by parts, from m = 1 up: every term is positive",
         textbook_form="Σ (−1)ᵏ C(n/2, k) (1 + cos²ᵏ⁺¹θ) / (2k + 1)",
-        lesson="Expanding (1 − s²)^(n/2) is exact algebra and hopeless arithmetic: binomial coefficients of size "
-        "2^(n/2) alternate in sign and add up to less than 1, so n/2 bits go. A closed form is worth no more than "
-        "the order in which it is summed.",
-        source=_PHONG,
+        lesson="Expanding (1 − s²)^(n/2) is exact algebra and hopeless arithmetic: binomial coefficients of "
+        "size 2^(n/2) alternate in sign and add up to less than 1, so about n/2 bits go. A closed "
+        "form is worth no more than the order in which it is summed.",
+        source=Phong.SOURCE,
     ),
 )

@@ -164,9 +164,10 @@ def measure(row: Row) -> StabilityResult:
 
 
 def agreement(row: Row) -> float:
-    """Return the digits to which the textbook's formula, given 900, agrees with the truth: they are one function.
+    """Return the digits to which the textbook's formula, worked out with 900, agrees with the truth.
 
-    What is left is then the fault of rounding alone. At most 50; 0 for a truth, or a formula, that is wrong.
+    At most 50: both are then one function, and what the formula loses in floats is lost by rounding alone.
+    0 where the truth, or the formula, is another.
     """
     import mpmath
 

@@ -19,7 +19,8 @@ _CAPS = Source(
     year=2023,
     title="Sampling Visible GGX Normals with Spherical Caps. Computer Graphics Forum 42(8)",
     doi="10.1111/cgf.14867",
-    equation="listing 1; for normal incidence, tanθm = α √(u/(1 − u)) of Walter et al. (2007), equation 35",
+    equation="the cap's sampling; at normal incidence it is equation 35 of Walter et al. (2007), "
+    "tanθm = α √(u/(1 − u))",
 )
 
 
@@ -135,9 +136,10 @@ ROWS = (
         kernel_name="radiokit.bsdfs.ggx.GGX.evaluate",
         kernel_form="D = ((h⊥² + h_z²) / (h⊥²/α + α h_z²))² / π, h not normalised",
         textbook_form="D = α² / (π ((α² − 1) cos²θ + 1)²)",
-        lesson="At the peak, cos θ is 1 and (α² − 1) + 1 has to give α² back: it comes back with an error of ε, so "
-        "D is wrong by ε/α², in float32 by more than itself for α below 10⁻³. Written as α² cos²θ + sin²θ it "
-        "is a sum of positive terms, if the sine comes from the vector and not from the cosine.",
+        lesson="At the peak, cos θ is 1 and (α² − 1) + 1 has to give α² back: it comes back with an error "
+        "of ε, so D is wrong by ε/α², in float32 by more than itself for α below 2·10⁻⁴. Written as "
+        "α² cos²θ + sin²θ it is a sum of positive terms, if the sine comes from the vector and not "
+        "from the cosine.",
         source=_WALTER,
     ),
     Row(
@@ -152,9 +154,9 @@ ROWS = (
         kernel_name="radiokit.bsdfs.ggx.GGX.pdf",
         kernel_form="D / (2 (cosθ + √(α² sin²θ + cos²θ)))",
         textbook_form="G₁ D / (4 cosθ), Λ = (√(1 + α² tan²θ) − 1)/2, tan²θ = (1 − cos²θ)/cos²θ",
-        lesson="At 89.9999° G₁ tends to 0 and is divided by a cosine that does so too; multiplied out, cosine and "
-        "root add, and neither vanishing number is formed. What fails in print is D again: its (α² − 1) + 1 "
-        "is in every density that a sampler reports.",
+        lesson="At 89.9999° G₁ tends to 0 and is divided by a cosine that does so too; multiplied out, "
+        "cosine and root add, and neither vanishing number is formed. What fails in print is D "
+        "again: its (α² − 1) + 1 is in every density that a sampler reports.",
         source=_WALTER,
     ),
     Row(
@@ -169,9 +171,9 @@ ROWS = (
         kernel_name="radiokit.bsdfs.ggx.GGX.sample",
         kernel_form="radius √(u (1 + z) ((1 − u)(1 + z) + sin²θ/(1 + z)))",
         textbook_form="c = (1 − u)(1 + z) − z, radius √(1 − c²)",
-        lesson="The height of a point on the cap is 1 up to rounding when u is small, and its distance from the "
-        "axis is then made of that rounding: the innermost samples fall on rings. The radius is √u to begin "
-        "with; it needs no height.",
+        lesson="The height of a point on the cap is 1 up to rounding when u is small, and its distance from "
+        "the axis is then made of that rounding: the innermost samples fall on rings. The radius is "
+        "√u to begin with; it needs no height.",
         source=_CAPS,
     ),
 )

@@ -80,9 +80,10 @@ ROWS = (
         kernel_name="radiokit.bsdfs.phong.Phong.evaluate",
         kernel_form="exp(n log1p(−|r − wi|²/2))",
         textbook_form="(r·wi)ⁿ",
-        lesson="A power multiplies the relative error of its base by n, and the base, a cosine next to 1, was "
-        "rounded to ε: six digits go at n = 10⁶, and all of them in float32. The square of the distance "
-        "between wi and r holds what the cosine lost, and log1p takes it without adding it to 1.",
+        lesson="A power multiplies the relative error of its base by n, and the base, a cosine next to 1, "
+        "was rounded to ε: five digits go at n = 10⁶, and in float32 two are left. The square of the "
+        "distance between wi and r holds what the cosine lost, and log1p takes it without adding it "
+        "to 1.",
         source=Phong.SOURCE,
     ),
     Row(
@@ -97,8 +98,8 @@ ROWS = (
         kernel_name="radiokit.bsdfs.phong.Phong.sample",
         kernel_form="sin α = √(−expm1(2 log1p(−u)/(n + 1)))",
         textbook_form="cos α = (1 − u)^(1/(n + 1)), sin α = √(1 − cos²α)",
-        lesson="The n-th root of a number is next to 1, and one minus its square is mostly rounding. expm1 computes "
-        "eˣ − 1 without ever forming eˣ: the subtraction is done in the series.",
+        lesson="The n-th root of a number is next to 1, and one minus its square is mostly rounding. expm1 "
+        "computes eˣ − 1 without ever forming eˣ: the subtraction is done in the series.",
         source=Phong.SOURCE,
     ),
 )

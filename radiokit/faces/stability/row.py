@@ -1,4 +1,4 @@
-"""Row: one kernel on its hard axis, the textbook's formula for the same function, the truth, and the lesson."""
+"""Row: a kernel on its hard axis, the textbook's formula for the same function, the truth, the lesson."""
 
 from __future__ import annotations
 

@@ -29,14 +29,16 @@ def show_rows(results: Sequence[StabilityResult]) -> None:
         line: list[object] = [result.row.name]
         for name in PRECISIONS:
             kernel, textbook = result.kernel[name], result.textbook[name]
-            line += [_number(kernel.worst), _number(textbook.worst), f"{textbook.at:.1g}"]
+            inside = "" if kernel.inside == name else f" in {kernel.inside}"
+            line += [_number(kernel.worst) + inside, _number(textbook.worst), f"{textbook.at:.1g}"]
             line.append(f"{kernel.digits:.1f} / {textbook.digits:.1f}")
         lines.append((*line, result.outcome))
     show_table("worst error in ulps / condition number", (*columns, "outcome"), lines)
     over = [result.row.name for result in results if result.exit_code]
     fails = sum(bool(result.textbook_fails) for result in results)
+    held = len(results) - len(over)
     write(
-        f"{len(results) - len(over)} of {len(results)} kernels stay within {LIMIT:g} ulps × condition number; "
+        f"{held} of {len(results)} kernels stay within {LIMIT:g} ulps × condition number; "
         f"{fails} of the textbook's formulas go beyond {FAILS:g}"
     )
     for name in over:

@@ -14,12 +14,11 @@ from radiokit.measure.warps import CosineHemisphere, UniformCone
 
 __all__ = ["ROWS"]
 
-_HEITZ = Source(
-    authors="Heitz",
-    year=2014,
-    title="Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs. Journal of Computer "
-    "Graphics Techniques 3(2)",
-    equation="section 3, slopes and the half vector; the horizon's place in slope space is derived here",
+_SLOPE = Source(
+    authors="The radiokit developers",
+    year=2026,
+    title="radiokit",
+    equation="the horizon in slope space, in the docstring of radiokit.measure.slope.slope_map",
 )
 
 
@@ -110,9 +109,9 @@ ROWS = (
         kernel_name="radiokit.measure.warps.UniformCone.sample",
         kernel_form="d = 2 sin²(θ/2) u, radius √(d (2(1 − u) + 2 cos²(θ/2) u))",
         textbook_form="c = 1 − u (1 − cos θ), radius √(1 − c²)",
-        lesson="The cosine of a sample in a narrow cone is 1 up to rounding: samples sit on a few rings √ε apart, "
-        "and below θ = 10⁻⁸ all of them on the axis, so that a distant lamp has no size. Keeping the depth "
-        "1 − c, instead of c, keeps every digit of the radius.",
+        lesson="The cosine of a sample in a narrow cone is 1 up to rounding: samples sit on a few rings √ε "
+        "apart, and below θ = 10⁻⁸ all of them on the axis, so that a distant lamp has no size. "
+        "Keeping the depth 1 − c, instead of c, keeps every digit of the radius.",
         source=UniformCone.SOURCE,
     ),
     Row(
@@ -127,8 +126,8 @@ ROWS = (
         kernel_name="radiokit.measure.warps.UniformCone.invert",
         kernel_form="(x² + y²) / (1 + z) / (2 sin²(θ/2))",
         textbook_form="(1 − z) / (1 − cos θ)",
-        lesson="Two differences, both made of rounding, and in the end 0/0: a test of the sampler by its inverse "
-        "would test noise. 1 − z is (x² + y²)/(1 + z), where nothing cancels.",
+        lesson="Two differences, both made of rounding, and in the end 0/0: a test of the sampler by its "
+        "inverse would test noise. 1 − z is (x² + y²)/(1 + z), where nothing cancels.",
         source=UniformCone.SOURCE,
     ),
     Row(
@@ -143,9 +142,9 @@ ROWS = (
         kernel_name="radiokit.measure.warps.CosineHemisphere.sample",
         kernel_form="√(d (2 − d)) with the distance d = 2 min(u, 1 − u) from the rim",
         textbook_form="√(1 − r²) with r = 1 − 2u",
-        lesson="Lifting the disk to the hemisphere by √(1 − x² − y²) asks how far r is from 1 after r was rounded. "
-        "Many samples land on z = 0, where their density is 0 and their weight is 0/0. The distance from the "
-        "rim is known exactly: it is u.",
+        lesson="Lifting the disk to the hemisphere by √(1 − x² − y²) asks how far r is from 1 after r was "
+        "rounded. In float32 such samples land on z = 0, where their density is 0 and their weight "
+        "0/0. The distance from the rim is known exactly: it is u.",
         source=CosineHemisphere.SOURCE,
     ),
     Row(
@@ -160,9 +159,10 @@ ROWS = (
         kernel_name="radiokit.measure.slope.slope_map",
         kernel_form="cosθo (e^y − ρ)(ρ + e^−y)/(1 + ρ²), the gap e^y − ρ as one sinh",
         textbook_form="2 (wo·h) h_z − cosθo",
-        lesson="Reflecting at h gives the height as a difference of two cosines that agree at the horizon. There "
-        "the height is quadratic in the distance, so twice as many digits go as the problem itself loses. "
-        "Factorised, the height is a product, and its one small factor is computed as what it is.",
-        source=_HEITZ,
+        lesson="Reflecting at h gives the height as a difference of two cosines that agree at the horizon. "
+        "There the height is quadratic in the distance, so twice as many digits go as the problem "
+        "itself loses. Factorised, the height is a product, and its one small factor is computed as "
+        "what it is.",
+        source=_SLOPE,
     ),
 )
