@@ -42,12 +42,10 @@ def draw_row(result: StabilityResult, path: Path) -> Path:
             drawn = np.where(np.isfinite(errors), np.clip(errors, FLOOR, right / 10), right)
             axes.plot(accuracy.values, drawn, color=colour, marker="o", ms=4, lw=1.3, label=label)
         axes.axhline(LIMIT, color="black", lw=0.7, ls="--")
-        values = np.array(result.kernel[name].values)
-        axes.set_xscale(
-            "log" if values.min() > 0 else "symlog", **({} if values.min() > 0 else {"linthresh": 1e3})
-        )
-        if values[0] > values[-1]:
+        axes.set_xscale("log")
+        if accuracy.values[0] > accuracy.values[-1]:
             axes.invert_xaxis()
+        axes.tick_params(axis="x", labelsize=8)
         axes.set_yscale("log")
         axes.set_ylim(FLOOR / 2, 3 * right)
         _infinite(axes.yaxis, right)
@@ -65,23 +63,12 @@ def _draw_panel(axes: Any, results: Sequence[StabilityResult], name: str, right:
     axes.axvline(LIMIT, color="black", lw=0.7, ls="--")
     for place, result in enumerate(results):
         ends = []
-        for accuracy, colour, label in _forms(result, name):
+        for (accuracy, colour, label), size in zip(_forms(result, name), (7.5, 6.0), strict=True):
             end = float(np.clip(accuracy.worst, FLOOR, right / 10)) if accuracy.finite else right
             ends.append(end)
+            style = {"color": colour, "ms": size, "mec": "white", "mew": 0.6, "zorder": 3}
             kept = label if place == 0 else None
-            marker = "o" if accuracy.finite else "X"
-            axes.plot(
-                [end],
-                [place],
-                marker,
-                color=colour,
-                ms=7,
-                ls="none",
-                label=kept,
-                zorder=3,
-                mec="white",
-                mew=0.6,
-            )
+            axes.plot([end], [place], "o" if accuracy.finite else "X", label=kept, **style)
         axes.plot(ends, [place, place], color="#b8b8b8", lw=1.6, zorder=2, solid_capstyle="round")
         text = f"{result.kernel[name].digits:.0f} → {result.textbook[name].digits:.0f}"
         axes.text(1.01, place, text, transform=axes.get_yaxis_transform(), va="center", fontsize=7.5)

@@ -1,4 +1,4 @@
-"""Fresnel: reflectance and refraction where they vanish, or near the normal, the horizon, the critical angle."""
+"""Fresnel: reflectance and refraction near the normal, the horizon, the critical angle, and an index of 1."""
 
 from __future__ import annotations
 
