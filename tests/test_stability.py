@@ -60,6 +60,17 @@ def test_textbook_and_truth_are_one_function(name):
     assert agreement(ROWS[name]) >= 40
 
 
+@pytest.mark.parametrize("name", [name for name in ROWS if name != "phong-furnace"])  # its axis is integers
+def test_the_kernel_holds_between_the_places_shown_too(name, rng):
+    row = ROWS[name]
+
+    def anywhere(values):
+        return tuple(np.exp(rng.uniform(*np.log([min(values), max(values)]), 8)).tolist()) if values else ()
+
+    found = measure(replace(row, values=anywhere(row.values), values_float32=anywhere(row.values_float32)))
+    assert found.exit_code == 0, found.kernel
+
+
 def test_a_planted_wrong_truth_is_noticed():
     row = ROWS["cap-solid-angle"]
     theta = sympy.Symbol("theta", positive=True)
