@@ -198,8 +198,8 @@ def _components(wi: npt.ArrayLike, wo: npt.ArrayLike) -> list[float]:
     return components
 
 
-def ulps(value: npt.ArrayLike, exact: Any) -> Any:
-    """Return |value − exact| in units of the last place of ``exact``, rounded to float64.
+def ulps(value: npt.ArrayLike, exact: Any, precision: type[np.floating[Any]] = np.float64) -> Any:
+    """Return |value − exact| in units of the last place of ``exact``, rounded to ``precision``.
 
     A unit is never smaller than the smallest denormal, so an underflow to 0 costs at most half a unit. A
     NaN, or an infinity where the truth is finite, is infinitely far away.
@@ -210,6 +210,8 @@ def ulps(value: npt.ArrayLike, exact: Any) -> Any:
         What was computed.
     exact : mpmath.mpf, or a sequence of the same shape
         The truth.
+    precision : type
+        ``numpy.float64`` or ``numpy.float32``: whose last place is the unit.
 
     >>> import mpmath
     >>> float(ulps(1.0 + 2**-52, mpmath.mpf(1))), float(ulps(0.0, mpmath.mpf("1e-400"))) < 0.5
@@ -222,7 +224,8 @@ def ulps(value: npt.ArrayLike, exact: Any) -> Any:
     for index in np.ndindex(result.shape):
         v = float(np.broadcast_to(values, result.shape)[index])
         truth = mpmath.mpmathify(np.broadcast_to(truths, result.shape)[index])
-        nearest = float(truth)
+        with np.errstate(over="ignore", under="ignore"):
+            nearest = precision(float(truth))
         if not (np.isfinite(v) and np.isfinite(nearest)):
             result[index] = 0.0 if v == nearest else np.inf
             continue
@@ -232,14 +235,19 @@ def ulps(value: npt.ArrayLike, exact: Any) -> Any:
     return result[()]
 
 
-def scaled_ulps(value: npt.ArrayLike, exact: Any, condition: npt.ArrayLike) -> Any:
+def scaled_ulps(
+    value: npt.ArrayLike,
+    exact: Any,
+    condition: npt.ArrayLike,
+    precision: type[np.floating[Any]] = np.float64,
+) -> Any:
     """Return the error in ulps divided by max(1, condition): what a backward-stable kernel keeps small.
 
     >>> import mpmath
     >>> float(scaled_ulps(1.0 + 2**-50, mpmath.mpf(1), 2.0))
     2.0
     """
-    count = np.asarray(ulps(value, exact))
+    count = np.asarray(ulps(value, exact, precision))
     # Where the truth is 0 or not finite the condition number means nothing, and excuses nothing.
     defined = np.isfinite(condition) & np.isfinite(count)
     return np.where(defined, count / np.maximum(1.0, np.where(defined, condition, 1.0)), count)[()]

@@ -1,0 +1,1 @@
+"""Stability: each numeric kernel beside the textbook's formula where digits are lost; one file a family."""
