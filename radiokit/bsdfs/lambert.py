@@ -13,6 +13,7 @@ import numpy as np
 from radiokit.contracts.bsdf import BSDF, Claims, FloatArray
 from radiokit.contracts.parameters import parameter
 from radiokit.facts.source import Source
+from radiokit.measure.kernels import Kernel, kernel
 from radiokit.measure.twin import Twin
 from radiokit.measure.warps import CosineHemisphere
 
@@ -27,6 +28,11 @@ SOURCE = Source(
 )
 
 _WARP = CosineHemisphere()
+
+
+@kernel
+def _weight(u0: float, u1: float, reflectance: float) -> float:
+    return reflectance
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,6 +73,10 @@ class Lambert(BSDF):
     def sample(self, u: FloatArray, wo: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return ``wi``, cosine-distributed, and ``weight = ρ``."""
         return _WARP.sample(u), np.where(wo[..., 2] > 0.0, self.reflectance, 0.0)
+
+    def weight_kernel(self, wo: FloatArray) -> tuple[Kernel, tuple[float, ...]]:
+        """Return ρ as a kernel."""
+        return _weight, (self.reflectance,)
 
     def lobe_width(self) -> float:
         """Return 1, the width of a diffuse lobe."""
