@@ -237,6 +237,10 @@ def test_the_switch_and_the_absence_of_numba(monkeypatch):
     assert not numba_runs()
     monkeypatch.setenv("RADIOKIT_NO_NUMBA", "0")
     assert numba_runs()
+    numba = pytest.importorskip("numba")
+    with monkeypatch.context() as patch:
+        patch.setattr(numba.config, "DISABLE_JIT", 1)
+        assert not numba_runs()
     monkeypatch.setitem(sys.modules, "numba", None)
     assert not numba_runs()
 
@@ -349,8 +353,9 @@ def test_the_answer_does_not_depend_on_the_threads(mode, seed, monkeypatch):
     if mode == "plain":
         monkeypatch.setenv("RADIOKIT_NO_NUMBA", "1")
     function = (lambda u0, u1, a: a * u0 * u1) if mode == "black box" else product
-    samples = 5 * BLOCK + 17
-    found = [fused_mean(function, (3.0,), samples=samples, rng=seed, workers=w) for w in (1, 2, 3, 7, None)]
+    samples = 2 * BLOCK + 17
+    found = [fused_mean(function, (3.0,), samples=samples, rng=seed, workers=w) for w in (1, 2, 5, None)]
+    assert found[0].evaluations == samples
     assert len({(estimate.value, estimate.error, estimate.evaluations) for estimate in found}) == 1
     assert z_test(found[0], 0.75) > LEVEL
 
@@ -438,12 +443,13 @@ def test_memory_does_not_grow_with_the_samples(seed):
         return size
 
     peak(2)
-    assert peak(1600) < 2 * peak(400) < 2_000_000  # a few hundred moments are on their way at most
+    assert peak(1000) < 1.5 * peak(300) < 2_000_000  # 256 blocks are on their way at most
 
 
 # Fresh processes
 
 FIRST = """
+import pathlib
 import sys
 import numpy as np
 from radiokit import albedo, bsdf
@@ -454,11 +460,10 @@ weight, constants = f.weight_kernel(np.array([0.6, 0.0, 0.8]))
 hits = 0
 if "numba" in sys.modules:
     hits = sum(fused._compiled(weight, len(constants)).stats.cache_hits.values())
-try:
-    import resource
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-except ImportError:
-    peak = 0
+status = pathlib.Path("/proc/self/status")
+peak = 0
+if status.exists():
+    peak = next(int(line.split()[1]) for line in status.read_text().splitlines() if line.startswith("VmHWM"))
 print(float(found.value).hex(), "numba" in sys.modules, hits, peak)
 """
 
@@ -484,7 +489,7 @@ def test_a_second_process_finds_the_machine_code_of_the_first(tmp_path):
     assert (first[0], first[2], second[2]) == (second[0], "0", "1")
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="ru_maxrss counts KiB on Linux")
+@pytest.mark.skipif(sys.platform != "linux", reason="/proc/self/status counts KiB on Linux")
 def test_a_quarter_of_a_billion_samples_need_no_more_memory_than_a_thousand(tmp_path):
     few, many = (int(fresh(tmp_path, samples)[3]) for samples in (1000, 1 << 28))
     assert many < few + 20_000
@@ -497,5 +502,21 @@ def test_a_process_without_numba_does_not_load_it(tmp_path):
     assert float.fromhex(value) == pytest.approx(float.fromhex(fresh(tmp_path, 1000)[0]), rel=1e-13)
 
 
-def test_there_is_a_processor():
+def test_nowhere_to_keep_the_cache_is_no_failure(monkeypatch):
+    from numba.core import caching
+
+    from radiokit.measure import fused
+
+    def nowhere(self, function):
+        raise RuntimeError("cannot cache function: no locator available")
+
+    monkeypatch.setattr(caching.CompileResultCacheImpl, "__init__", nowhere)
+    found = fused._compiled.__wrapped__(product, 1)
+    assert found(np.uint64(1), np.uint64(0), 100, (1.0,))[0] > 0
+    assert not found.stats.cache_path
+
+
+def test_a_browser_has_one_processor(monkeypatch):
     assert 1 <= processors() <= (os.cpu_count() or 1)
+    monkeypatch.setattr(sys, "platform", "emscripten")
+    assert processors() == 1

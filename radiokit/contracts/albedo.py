@@ -42,7 +42,8 @@ def albedo(
     wo : array_like, shape (3,) or (N, 3)
         Unit vectors above the horizon.
     method : {"quadrature", "mc"}
-        Quadrature gives a bound; Monte Carlo samples the BSDF and gives a standard error.
+        Quadrature gives a bound; Monte Carlo samples the BSDF and gives a standard error. A model with a
+        weight kernel is sampled by machine code on all processors, with the same answer on any number.
     rtol : float
         Relative error asked of the quadrature.
     samples, rng

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import dataclass
@@ -19,8 +20,8 @@ from radiokit.measure.montecarlo import BlockDraw, Moments, mean
 
 __all__ = ["FusedDraw", "fused_mean", "points", "processors"]
 
-BLOCK = 1 << 18
-"""Samples in a block: half a millisecond of work, which is what a thread takes at a time."""
+BLOCK = 1 << 20
+"""Samples in a block, which is what a thread takes at a time: a few milliseconds of work."""
 
 _PIECE = 1 << 13  # of a block where NumPy does the work: its temporaries stay in the cache
 _PILOT = 64  # samples whose mean the deviations are taken from
@@ -143,6 +144,8 @@ def processors() -> int:
     >>> processors() >= 1
     True
     """
+    if sys.platform == "emscripten":  # a browser, where no thread can be started
+        return 1
     affinity = getattr(os, "sched_getaffinity", None)
     return len(affinity(0)) if affinity else os.cpu_count() or 1
 
@@ -171,7 +174,7 @@ def fused_mean(
     rng : int, numpy.random.Generator or None
         The seed, a generator to draw one from, or None for fresh entropy.
     workers : int, optional
-        Threads; as many as there are processors by default.
+        Threads; by default as many as there are processors, and one for a callable that is no kernel.
     method : str
         What the estimate says of its method.
 
@@ -186,10 +189,12 @@ def fused_mean(
     >>> estimate.covers(0.25, level=0.9999)
     True
     """
-    count = processors() if workers is None else workers
+    count = workers
+    if count is None:
+        count = processors() if isinstance(function, Kernel) else 1
     if type(count) is not int or count < 1:
         raise ParameterError("workers", workers, "an integer, at least 1, or None")
-    draw = FusedDraw(function, parameters)
+    draw = FusedDraw(function, tuple(map(float, parameters)))
     draw.prepare()
     if count == 1 or type(samples) is not int or samples <= BLOCK:
         return mean(draw, samples=samples, rng=rng, block=BLOCK, method=method)

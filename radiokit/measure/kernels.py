@@ -2,7 +2,8 @@
 
 A kernel is written once, for numbers: arithmetic, ``np.sqrt`` and its like, other kernels, and ``select`` in
 place of ``if``. Numba makes machine code of it, without branches, so that the loop round it is vectorised;
-without Numba the same lines run on arrays. Numba is imported when the first kernel is compiled. Setting
+without Numba the same lines run on arrays. Sums are put in any order, so that no error term of an addition
+survives: a kernel cannot compensate. Numba is imported when the first kernel is compiled. Setting
 ``RADIOKIT_NO_NUMBA=1`` in the environment does without it.
 """
 
@@ -113,10 +114,10 @@ def numba_runs() -> bool:
     if importlib.util.find_spec("numba") is None:
         return False
     try:
-        import numba  # noqa: F401
+        import numba
     except ImportError:  # it refuses a NumPy that it does not know
         return False
-    return True
+    return not numba.config.DISABLE_JIT
 
 
 def compile_with(
@@ -139,11 +140,13 @@ def compile_with(
     with _lock:
         linked = _linked(driver, bound)
         linked.__qualname__ = f"{driver.__qualname__}-{_fingerprint(driver, bound)[:16]}"
+        types = argument_types(numba)
         try:
             found = numba.njit(cache=True, **_FLAGS)(linked)
-        except RuntimeError:  # nowhere to keep the cache
+            found.compile(types)
+        except (RuntimeError, OSError):  # nowhere to keep the cache
             found = numba.njit(**_FLAGS)(linked)
-        found.compile(argument_types(numba))
+            found.compile(types)
         return found
 
 
