@@ -206,6 +206,24 @@ def test_a_kernel_is_a_plain_function_too():
     assert sincos.__doc__.startswith("Return sine and cosine")
 
 
+@both
+def test_a_kernel_maps_arrays(mode, rng, monkeypatch):
+    if mode == "plain":
+        monkeypatch.setenv("RADIOKIT_NO_NUMBA", "1")
+    wo, u = np.array([0.6, 0.0, 0.8]), rng.random((2003, 2))
+    for f in (bsdf("ggx", alpha=0.2, eta=1.0, k=0.0), bsdf("ggx"), bsdf("phong"), bsdf("lambert")):
+        weight, constants = f.weight_kernel(wo)
+        found = weight.map(*u.T, constants=constants)
+        _, expected = f.sample(u, np.broadcast_to(wo, (len(u), 3)))
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
+    circle = sincos.map(u[:, 0], out=np.empty((2, len(u))))
+    np.testing.assert_allclose(circle, [np.sin(2 * np.pi * u[:, 0]), np.cos(2 * np.pi * u[:, 0])], atol=1e-14)
+    np.testing.assert_array_equal(product.map([0.5], [0.5], constants=(4,)), [1.0])
+    assert np.isnan(root.map([0.0], [0.0], constants=(1.0,)))
+    with pytest.raises(ParameterError, match=r"columns = \[\(2,\), \(1,\)\] is not allowed"):
+        product.map([0.5, 1.0], [0.5], constants=(4.0,))
+
+
 def test_what_is_no_kernel_is_refused():
     with pytest.raises(TypeError, match="made from a function, not from int"):
         kernel(3)

@@ -14,11 +14,13 @@ import importlib.util
 import os
 import threading
 from collections.abc import Callable
-from functools import cached_property
+from functools import cached_property, lru_cache
 from types import CodeType, FunctionType
 from typing import Any, overload
 
 import numpy as np
+
+from radiokit.facts.errors import ParameterError
 
 __all__ = ["Kernel", "compile_with", "kernel", "numba_runs", "select"]
 
@@ -55,6 +57,43 @@ class Kernel:
     def __call__(self, *arguments: Any) -> Any:
         """Run the plain form, with numbers or arrays."""
         return self.plain(*arguments)
+
+    def map(self, *columns: Any, constants: tuple[float, ...] = (), out: Any = None) -> Any:
+        """Return the values for arrays (n,), one a varying argument: a pass of machine code where Numba runs.
+
+        Several passes, some of them NumPy functions, make a pipeline; in blocks of some thousand numbers it
+        stays in the cache. Nothing warns: what ``select`` drops may be NaN.
+
+        Parameters
+        ----------
+        *columns : array_like, shape (n,)
+            The first arguments.
+        constants : tuple of float
+            The other arguments, the same for all.
+        out : ndarray of float64, optional
+            Where to: shape (n,) for a kernel that returns a number, (m, n) for one that returns m of them.
+
+        Raises
+        ------
+        ParameterError
+            When the columns differ in length.
+
+        >>> scaled = kernel(lambda a, b, scale: scale * a * b)
+        >>> scaled.map([1.0, 2.0], [3.0, 4.0], constants=(0.5,)).tolist()
+        [1.5, 4.0]
+        """
+        arrays = [np.ascontiguousarray(column, dtype=np.float64) for column in columns]
+        shapes = [array.shape for array in arrays]
+        if not arrays or set(shapes) != {(arrays[0].size,)}:
+            raise ParameterError("columns", shapes, "arrays of shape (n,)")
+        out = np.empty(arrays[0].shape) if out is None else out
+        with np.errstate(all="ignore"):
+            if numba_runs():
+                run = _mapped(self, len(arrays), len(constants), 0 if out.ndim == 1 else len(out))
+                run(*arrays, tuple(map(float, constants)), out)
+            else:
+                out[...] = self.plain(*arrays, *constants)
+        return out
 
     def __repr__(self) -> str:
         return f"kernel({self.__module__}.{self.__qualname__})"
@@ -148,6 +187,30 @@ def compile_with(
             found = numba.njit(**_FLAGS)(linked)
             found.compile(types)
         return found
+
+
+@lru_cache(maxsize=64)
+def _mapped(function: Kernel, columns: int, constants: int, outputs: int) -> Any:
+    """Compile the loop over ``columns`` arrays; its text is the only part that depends on their number."""
+    names = [f"c{j}" for j in range(columns)]
+    values = ", ".join(f"out[{j}, i]" for j in range(outputs)) or "out[i]"
+    text = (
+        f"def loop({', '.join(names)}, constants, out):\n"
+        f"    for i in range(len(c0)):\n"
+        f"        {values} = function({', '.join(f'{name}[i]' for name in names)}, *constants)\n"
+    )
+    space: dict[str, Any] = {"__name__": __name__}
+    exec(compile(text, __file__, "exec"), space)
+
+    def types(numba: Any) -> tuple[Any, ...]:
+        number = numba.float64
+        return (
+            *[number[::1]] * columns,
+            numba.types.UniTuple(number, constants),
+            number[:, ::1] if outputs else number[::1],
+        )
+
+    return compile_with(space["loop"], types, function=function)
 
 
 def _named(function: Callable[..., Any], bound: dict[str, Kernel]) -> dict[str, Any]:
