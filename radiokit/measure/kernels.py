@@ -38,7 +38,7 @@ class Kernel:
     Parameters
     ----------
     function : callable
-        Takes and returns numbers, or tuples of them. Its globals may be numbers, modules and other kernels.
+        Takes and returns numbers, or tuples of them. Its globals may be numbers, NumPy, and other kernels.
     plain : callable, optional
         What runs without Numba; ``function`` itself, unless it cannot take arrays.
     """
