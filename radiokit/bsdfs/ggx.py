@@ -17,8 +17,11 @@ from radiokit.contracts.parameters import parameter
 from radiokit.facts.directions import dot
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.source import Source
+from radiokit.measure.elementary import sincos
+from radiokit.measure.kernels import Kernel, kernel, select
 from radiokit.measure.twin import Twin
 from radiokit.physics import fresnel
+from radiokit.physics.fresnel import conductor_kernel
 
 __all__ = ["GGX"]
 
@@ -32,6 +35,54 @@ SOURCE = Source(
 )
 
 _HORIZON = 1e-150  # a cosine below this is 0: no unit vector tells them apart, and squares would underflow
+
+
+@kernel
+def _facet(u0: Any, u1: Any, alpha: Any, x: Any, y: Any, z: Any, length: Any, cos_o: Any) -> Any:
+    """Return cosθi, and the squared cosine at the facet: the steps of ``GGX.sample`` for one number each."""
+    up, down = (1.0 - u0) * (1.0 + z), u0 * (1.0 + z)
+    radius = np.sqrt(down * (up + (x * x + y * y) / (1.0 + z)))
+    sine, cosine = sincos(u1)
+    a, b = radius * cosine + x, radius * sine + y
+    along = length * (x * a + y * b + z * up)
+    inverse = 1.0 / (alpha * alpha * (a * a + b * b) + up * up)
+    return 2.0 * along * up * inverse - cos_o, along * along * inverse
+
+
+@kernel
+def _shadowing(cos_i: Any, alpha: Any, cos_o: Any, root_o: Any) -> Any:
+    """Return G₂ / G₁, the cosines multiplied out."""
+    root_i = np.sqrt(alpha * alpha + (1.0 - alpha * alpha) * (cos_i * cos_i))
+    above = (cos_i > _HORIZON) & (cos_o > _HORIZON)
+    share = cos_i * (cos_o + root_o) / select(above, cos_i * root_o + cos_o * root_i, 1.0)
+    return select(above, share, 0.0)
+
+
+@kernel
+def _share(u0: Any, u1: Any, alpha: Any, x: Any, y: Any, z: Any, length: Any, cos_o: Any, root_o: Any) -> Any:
+    """Return the weight of facets that reflect everything."""
+    cos_i, _ = _facet(u0, u1, alpha, x, y, z, length, cos_o)
+    return _shadowing(cos_i, alpha, cos_o, root_o)
+
+
+@kernel
+def _metal_share(
+    u0: Any,
+    u1: Any,
+    eta: Any,
+    k: Any,
+    alpha: Any,
+    x: Any,
+    y: Any,
+    z: Any,
+    length: Any,
+    cos_o: Any,
+    root_o: Any,
+) -> Any:
+    """Return the weight of facets with an index."""
+    cos_i, square = _facet(u0, u1, alpha, x, y, z, length, cos_o)
+    cos_d = np.sqrt(select(square < 1.0, square, 1.0))
+    return conductor_kernel(cos_d, eta, k) * _shadowing(cos_i, alpha, cos_o, root_o)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -131,6 +182,15 @@ class GGX(BSDF):
         )
         wi = (2.0 * dot(wo, normal) / dot(normal, normal))[..., None] * normal - wo
         return wi, self._weight(wi, wo)
+
+    def weight_kernel(self, wo: FloatArray) -> tuple[Kernel, tuple[float, ...]]:
+        """Return F G₂ / G₁ of ``sample`` as a kernel."""
+        x, y, z = self.alpha * float(wo[0]), self.alpha * float(wo[1]), float(wo[2])
+        length = float(np.sqrt(x * x + y * y + z * z))
+        view = (self.alpha, x / length, y / length, z / length, length, z, float(self._root(wo)))
+        if self.eta is None or self.k is None:
+            return _share, view
+        return _metal_share, (*fresnel.clip_index(self.eta, self.k), *view)
 
     def _weight(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
         """Return F G₂ / G₁, the cosines multiplied out."""

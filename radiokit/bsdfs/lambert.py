@@ -13,6 +13,7 @@ import numpy as np
 from radiokit.contracts.bsdf import BSDF, Claims, FloatArray
 from radiokit.contracts.parameters import parameter
 from radiokit.facts.source import Source
+from radiokit.measure.kernels import Kernel, kernel
 from radiokit.measure.twin import Twin
 from radiokit.measure.warps import CosineHemisphere
 
@@ -27,6 +28,11 @@ SOURCE = Source(
 )
 
 _WARP = CosineHemisphere()
+
+
+@kernel
+def _weight(u0: float, u1: float, reflectance: float) -> float:
+    return reflectance
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,6 +78,10 @@ class Lambert(BSDF):
     def smooth(self) -> bool:
         """True."""
         return True
+
+    def weight_kernel(self, wo: FloatArray) -> tuple[Kernel, tuple[float, ...]]:
+        """Return ρ as a kernel."""
+        return _weight, (self.reflectance,)
 
     def lobe_width(self) -> float:
         """Return 1, the width of a diffuse lobe."""

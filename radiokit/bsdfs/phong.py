@@ -8,6 +8,7 @@ horizon and is lost (0.228 is left at 80° for an exponent of 10).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -15,6 +16,8 @@ from radiokit.contracts.bsdf import BSDF, Claims, FloatArray
 from radiokit.contracts.parameters import parameter
 from radiokit.facts.directions import dot, frame, reflect, to_world
 from radiokit.facts.source import Source
+from radiokit.measure.elementary import expm1, log, sincos
+from radiokit.measure.kernels import Kernel, kernel, select
 from radiokit.measure.twin import Twin
 
 __all__ = ["Phong"]
@@ -25,6 +28,16 @@ SOURCE = Source(
     title="Using the Modified Phong Reflectance Model for Physically Based Rendering. KU Leuven, CW 197",
     equation="section 3, the specular part of the modified Phong BRDF",
 )
+
+
+@kernel
+def _weight(u0: float, u1: float, scale: float, power: float, x: float, y: float, z: float) -> Any:
+    """Return the weight of ``sample``; −x, −y, z are the z components of the mirror direction's frame."""
+    loss = -expm1(log(1.0 - u0) * power)  # 1 − cosα; the difference is exact
+    radius = np.sqrt(loss * (2.0 - loss))
+    sine, cosine = sincos(u1)
+    cos_i = (1.0 - loss) * z + radius * (cosine * x + sine * y)
+    return scale * select(cos_i > 0.0, cos_i, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,6 +97,11 @@ class Phong(BSDF):
         wi = to_world(frame(reflect(wo)), local)
         scale = self.reflectance * (self.exponent + 2.0) / (self.exponent + 1.0)
         return wi, np.where(wo[..., 2] > 0.0, scale * np.maximum(wi[..., 2], 0.0), 0.0)
+
+    def weight_kernel(self, wo: FloatArray) -> tuple[Kernel, tuple[float, ...]]:
+        """Return ρ (n + 2)/(n + 1) cosθi as a kernel."""
+        scale = self.reflectance * (self.exponent + 2.0) / (self.exponent + 1.0)
+        return _weight, (scale, 1.0 / (self.exponent + 1.0), float(wo[0]), float(wo[1]), float(wo[2]))
 
     def _lobe(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
         """Return cosⁿα, or 0 below the horizon.

@@ -42,7 +42,8 @@ def albedo(
     wo : array_like, shape (3,) or (N, 3)
         Unit vectors above the horizon.
     method : {"quadrature", "mc"}
-        Quadrature gives a bound; Monte Carlo samples the BSDF and gives a standard error.
+        Quadrature gives a bound; Monte Carlo samples the BSDF and gives a standard error. A model with a
+        weight kernel is sampled by machine code on all processors, with the same answer on any number.
     rtol : float
         Relative error asked of the quadrature.
     samples, rng
@@ -158,7 +159,15 @@ def delta_albedo(model: BSDF, wo: FloatArray) -> Any:
 
 
 def _monte_carlo(model: BSDF, wo: FloatArray, samples: int, seed: int) -> Estimate:
+    method = "Monte Carlo, BSDF-sampled"
+    found = model.weight_kernel(wo)
+    if found is not None:
+        from radiokit.measure.fused import fused_mean
+
+        kernel, constants = found
+        return fused_mean(kernel, constants, samples=samples, rng=seed, method=method)
+
     def draw(generator: np.random.Generator, n: int) -> Any:
         return model.sample(generator.random((n, 2)), np.broadcast_to(wo, (n, 3)))[1]
 
-    return mean(draw, samples=samples, rng=seed, method="Monte Carlo, BSDF-sampled")
+    return mean(draw, samples=samples, rng=seed, method=method)

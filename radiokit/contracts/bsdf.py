@@ -17,6 +17,7 @@ from radiokit.facts.directions import check_directions
 from radiokit.facts.source import Source
 
 if TYPE_CHECKING:
+    from radiokit.measure.kernels import Kernel
     from radiokit.measure.twin import Twin
 
 __all__ = ["BSDF", "REGISTRY", "Claims", "DeltaLobe", "FloatArray", "bsdf", "list_bsdfs"]
@@ -95,6 +96,14 @@ class BSDF(ABC):
 
         A sample that is absorbed, or leaves below the horizon, has weight 0.
         """
+
+    def weight_kernel(self, wo: FloatArray) -> tuple[Kernel, tuple[float, ...]] | None:
+        """Return ``sample``'s weight for ``wo`` (3,) above the horizon as a kernel, or None if there is none.
+
+        ``kernel(u0, u1, *constants)``, with the constants that come with it, is the weight that ``sample``
+        gives for the point (u0, u1). Monte Carlo compiles it into its loop.
+        """
+        return None
 
     def delta_lobes(self, wo: FloatArray) -> tuple[DeltaLobe, ...]:
         """Return the delta lobes for ``wo`` (N, 3); none by default."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable, Generator
 from concurrent.futures import Executor, Future
@@ -17,7 +18,7 @@ import numpy.typing as npt
 from radiokit.facts.errors import CallableError, NonFiniteError, ParameterError
 from radiokit.facts.estimate import Estimate
 
-__all__ = ["Draw", "Moments", "block_generator", "mean", "seed_from"]
+__all__ = ["BlockDraw", "Draw", "Moments", "block_generator", "mean", "seed_from"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -96,6 +97,14 @@ class Moments:
             return np.where(self.m2 > 0, np.minimum(farthest * farthest / self.m2, 1.0), 0.0)[()]
 
 
+class BlockDraw(ABC):
+    """A draw that knows its samples by seed and number, and makes the moments of a block itself."""
+
+    @abstractmethod
+    def moments(self, seed: int, first: int, count: int) -> Moments:
+        """Return the moments of samples ``first`` to ``first + count - 1``."""
+
+
 def seed_from(rng: int | np.random.Generator | None) -> int:
     """Return a seed: the number itself, one drawn from a generator, or fresh entropy for None.
 
@@ -122,7 +131,7 @@ def block_generator(seed: int, index: int) -> np.random.Generator:
 
 
 def mean(
-    draw: Draw,
+    draw: Draw | BlockDraw,
     *,
     samples: int,
     rng: int | np.random.Generator | None = None,
@@ -140,9 +149,9 @@ def mean(
 
     Parameters
     ----------
-    draw : callable
+    draw : callable or BlockDraw
         ``draw(generator, n)`` returns ``(n,)`` or ``(n, K)`` finite values. It must be picklable for an
-        executor of processes and thread-safe for one of threads.
+        executor of processes and thread-safe for one of threads. A ``BlockDraw`` has no generators.
     samples : int
         At least 2; with ``rtol`` or ``seconds``, the most that are drawn.
     rng : int, numpy.random.Generator or None
@@ -198,7 +207,7 @@ def mean(
         with closing(_in_order(work, done, goal, executor)) as parts:
             for part in parts:
                 if done and np.shape(part.mean) != np.shape(total.mean):
-                    raise _bad_draw(draw, "returned blocks of different shapes")
+                    raise CallableError(_name(draw), "returned blocks of different shapes")
                 total = total.merge(part) if done else part
                 done += 1
                 late = seconds is not None and time.perf_counter() - start > seconds
@@ -230,12 +239,15 @@ def mean(
     )
 
 
-def _block(draw: Draw, seed: int, block: int, samples: int, index: int) -> Moments:
+def _block(draw: Draw | BlockDraw, seed: int, block: int, samples: int, index: int) -> Moments:
     """Draw one block and return its moments."""
     size = min(block, samples - index * block)
+    if isinstance(draw, BlockDraw):
+        return draw.moments(seed, index * block, size)
     values = np.asarray(draw(block_generator(seed, index), size), dtype=np.float64)
     if values.ndim not in (1, 2) or len(values) != size:
-        raise _bad_draw(draw, f"returned shape {values.shape} where ({size},) or ({size}, K) is due")
+        problem = f"returned shape {values.shape} where ({size},) or ({size}, K) is due"
+        raise CallableError(_name(draw), problem)
     finite = np.isfinite(values)
     if not finite.all():
         where = tuple(int(i) for i in np.argwhere(~finite)[0])
@@ -245,11 +257,7 @@ def _block(draw: Draw, seed: int, block: int, samples: int, index: int) -> Momen
     return Moments.of(values)
 
 
-def _bad_draw(draw: Draw, problem: str) -> CallableError:
-    return CallableError(_name(draw), problem)
-
-
-def _name(draw: Draw) -> str:
+def _name(draw: Draw | BlockDraw) -> str:
     return str(getattr(draw, "__qualname__", type(draw).__qualname__))
 
 

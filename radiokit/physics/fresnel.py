@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.source import Source
+from radiokit.measure.kernels import kernel, select
 
 if TYPE_CHECKING:
     import sympy
@@ -17,7 +18,9 @@ __all__ = [
     "CONDUCTOR_SOURCE",
     "DIELECTRIC_SOURCE",
     "SCHLICK_SOURCE",
+    "clip_index",
     "conductor",
+    "conductor_kernel",
     "conductor_symbolic",
     "dielectric",
     "dielectric_symbolic",
@@ -122,23 +125,41 @@ def conductor(cos_i: npt.ArrayLike, eta: npt.ArrayLike, k: npt.ArrayLike) -> Any
     0.92337164751
     """
     c = np.minimum(_number("cos_i", cos_i, 0.0, 1.0, _COSINE_TOLERANCE), 1.0)
-    n = np.clip(_number("eta", eta, np.nextafter(0.0, 1.0), np.inf), 1 / _HUGE, _HUGE)
-    k = np.minimum(_number("k", k, 0.0, np.inf), _HUGE)
+    n, k = _number("eta", eta, np.nextafter(0.0, 1.0), np.inf), _number("k", k, 0.0, np.inf)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return conductor_kernel(c, *clip_index(n, k))[()]
+
+
+def clip_index(eta: Any, k: Any) -> tuple[Any, Any]:
+    """Return the index in a range beyond which nothing changes: what ``conductor_kernel`` takes."""
+    return np.clip(eta, 1 / _HUGE, _HUGE), np.minimum(k, _HUGE)
+
+
+@kernel
+def _transmitted(n_i: Any, n_t: Any, c: Any) -> Any:
+    """Return n_t² − n_i² sin²θ, from the sine near the normal and from the cosine elsewhere."""
+    sine, cosine = n_i * np.sqrt((1.0 - c) * (1.0 + c)), n_i * c
+    return select(c > 0.75, (n_t - sine) * (n_t + sine), (n_t - n_i) * (n_t + n_i) + cosine * cosine)
+
+
+@kernel
+def conductor_kernel(c: Any, n: Any, k: Any) -> Any:
+    """Return what ``conductor`` does, for a cosine in [0, 1] and an index from ``clip_index``."""
     sin2 = (1.0 - c) * (1.0 + c)
     # q² = t + 2iηk; the larger of a and b comes from the sum that does not cancel, the other from ab = ηk.
-    t = _transmitted(np.ones_like(n), n, c) - k * k
-    larger = np.sqrt(0.5 * (np.hypot(t, 2.0 * n * k) + np.abs(t)))
-    smaller = np.divide(n * k, larger, out=np.zeros_like(larger), where=larger > 0.0)
-    a, b = np.where(t >= 0.0, larger, smaller), np.where(t >= 0.0, smaller, larger)
-    contrast = ((n - 1.0) ** 2 + k * k) * ((n + 1.0) ** 2 + k * k)
-    ac, bc2 = a * c, (b * c) ** 2
-    with np.errstate(divide="ignore", invalid="ignore"):
-        s_sum, p_sum = (a + c) ** 2 + b * b, (ac + sin2) ** 2 + bc2
-        s_loss, p_loss = 4.0 * ac / s_sum, 4.0 * ac * sin2 / p_sum  # the complements of the two quotients
-        r_s = np.where(s_loss < 0.5, 1.0 - s_loss, contrast / s_sum / s_sum)
-        ratio = np.where(p_loss < 0.5, 1.0 - p_loss, ((ac - sin2) ** 2 + bc2) / p_sum)
-        value = np.minimum(0.5 * r_s * (1.0 + ratio), 1.0)
-    return np.where(contrast == 0.0, 0.0, value)[()]
+    t, nk = _transmitted(1.0, n, c) - k * k, n * k
+    larger = np.sqrt(0.5 * (np.sqrt(t * t + 4.0 * (nk * nk)) + abs(t)))
+    smaller = nk / select(larger > 0.0, larger, 1.0)
+    a, b = select(t >= 0.0, larger, smaller), select(t >= 0.0, smaller, larger)
+    contrast = ((n - 1.0) * (n - 1.0) + k * k) * ((n + 1.0) * (n + 1.0) + k * k)
+    ac, bc2 = a * c, (b * c) * (b * c)
+    s_sum = (a + c) * (a + c) + b * b
+    p_sum = (ac + sin2) * (ac + sin2) + bc2
+    s_loss, p_loss = 4.0 * ac / s_sum, 4.0 * ac * sin2 / p_sum  # the complements of the two quotients
+    r_s = select(s_loss < 0.5, 1.0 - s_loss, contrast / s_sum / s_sum)
+    ratio = select(p_loss < 0.5, 1.0 - p_loss, ((ac - sin2) * (ac - sin2) + bc2) / p_sum)
+    value = 0.5 * r_s * (1.0 + ratio)
+    return select(contrast == 0.0, 0.0, select(value < 1.0, value, 1.0))
 
 
 def schlick(cos_i: npt.ArrayLike, f0: npt.ArrayLike) -> Any:
@@ -197,12 +218,6 @@ def _amplitude(a: FloatArray, b: FloatArray, squares: FloatArray) -> FloatArray:
         total = a + b
         loss = 2.0 * np.minimum(a, b) / total
         return np.where(loss < 0.5, 1.0 - loss, np.abs(squares) / total / total)
-
-
-def _transmitted(n_i: FloatArray, n_t: FloatArray, c: FloatArray) -> FloatArray:
-    """Return n_t² − n_i² sin²θ, from the sine near the normal and from the cosine elsewhere."""
-    sine, cosine = n_i * np.sqrt((1.0 - c) * (1.0 + c)), n_i * c
-    return np.where(c > 0.75, (n_t - sine) * (n_t + sine), (n_t - n_i) * (n_t + n_i) + cosine * cosine)
 
 
 def _number(name: str, value: npt.ArrayLike, low: float, high: float, tolerance: float = 0.0) -> FloatArray:

@@ -1,0 +1,202 @@
+"""Fused sums: random numbers, values and their moments in one loop that stores nothing."""
+
+from __future__ import annotations
+
+import os
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import nullcontext
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from radiokit.facts.errors import NonFiniteError, ParameterError
+from radiokit.facts.estimate import Estimate
+from radiokit.measure.elementary import key_of, stream, uniform
+from radiokit.measure.kernels import Kernel, compile_with, numba_runs
+from radiokit.measure.montecarlo import BlockDraw, Moments, mean
+
+__all__ = ["FusedDraw", "fused_mean", "points", "processors"]
+
+BLOCK = 1 << 20
+"""Samples in a block, which is what a thread takes at a time: a few milliseconds of work."""
+
+_PIECE = 1 << 13  # of a block where NumPy does the work: its temporaries stay in the cache
+_PILOT = 64  # samples whose mean the deviations are taken from
+_ZERO, _ONE = np.uint64(0), np.uint64(1)
+_sample: Any = None  # stands for the kernel in the driver below
+
+
+def _accumulate(key: Any, first: Any, count: Any, parameters: Any) -> Any:
+    """Return the pivot, the sums of deviations from it and of their squares, and the largest deviation.
+
+    The largest is found among the bits, as an integer: a maximum of floats would not be vectorised, since
+    NaN has no place in their order.
+    """
+    start0, start1 = stream(key, _ZERO), stream(key, _ONE)
+    origin = _sample(uniform(start0, first), uniform(start1, first), *parameters)
+    total = 0.0
+    pilot = min(count, _PILOT)
+    for j in range(pilot):
+        index = first + np.uint64(j)
+        total += _sample(uniform(start0, index), uniform(start1, index), *parameters) - origin
+    pivot = origin + total / pilot
+    total = squares = 0.0
+    largest = np.int64(0)
+    for j in range(count):
+        index = first + np.uint64(j)
+        deviation = _sample(uniform(start0, index), uniform(start1, index), *parameters) - pivot
+        total += deviation
+        squares += deviation * deviation
+        largest = max(largest, np.float64(abs(deviation)).view(np.int64))
+    return pivot, total, squares, largest
+
+
+@lru_cache(maxsize=64)
+def _compiled(function: Kernel, width: int) -> Any:
+    def types(numba: Any) -> tuple[Any, ...]:
+        return numba.uint64, numba.uint64, numba.int64, numba.types.UniTuple(numba.float64, width)
+
+    return compile_with(_accumulate, types, _sample=function)  # type: ignore[arg-type]
+
+
+def points(key: np.uint64, first: int, count: int) -> tuple[Any, Any]:
+    """Return the uniform numbers of samples ``first``, ``first + 1``, ...: two arrays (count,).
+
+    >>> u0, u1 = points(key_of(3), 10, 5)
+    >>> bool(np.all(u0[2:] == points(key_of(3), 12, 3)[0]))
+    True
+    """
+    index = np.arange(first, first + count, dtype=np.uint64)
+    with np.errstate(over="ignore"):
+        return uniform(stream(key, _ZERO), index), uniform(stream(key, _ONE), index)
+
+
+@dataclass(frozen=True)
+class FusedDraw(BlockDraw):
+    """Values of ``function(u0, u1, *parameters)`` for random points of the unit square, never stored.
+
+    Parameters
+    ----------
+    function : Kernel or callable
+        A kernel is compiled; any other function is called with arrays u0 and u1 (n,), and returns (n,).
+        Both see the same points for the same seed.
+    parameters : tuple of float
+    """
+
+    function: Any
+    parameters: tuple[float, ...] = ()
+
+    def prepare(self) -> None:
+        """Compile the kernel, once: threads then share it."""
+        if isinstance(self.function, Kernel) and numba_runs():
+            _compiled(self.function, len(self.parameters))
+
+    def moments(self, seed: int, first: int, count: int) -> Moments:
+        """Return the moments of samples ``first`` to ``first + count - 1``.
+
+        ``low`` and ``high`` are as far from the pivot as the sample farthest from it.
+        """
+        key = key_of(seed)
+        if not (isinstance(self.function, Kernel) and numba_runs()):
+            pieces = range(first, first + count, _PIECE)
+            found = [self._plain(key, at, min(_PIECE, first + count - at)) for at in pieces]
+            whole = found[0]
+            for part in found[1:]:
+                whole = whole.merge(part)
+            return whole
+        run = _compiled(self.function, len(self.parameters))
+        pivot, total, squares, bits = run(key, np.uint64(first), count, self.parameters)
+        if not np.isfinite(total):
+            for at in range(first, first + count, _PIECE):
+                self._plain(key, at, min(_PIECE, first + count - at))
+            raise NonFiniteError(f"{self._name} overflows between samples {first} and {first + count}")
+        farthest = float(np.int64(bits).view(np.float64))
+        shift = total / count
+        m2 = max(squares - total * shift, 0.0)
+        return Moments(count, pivot + shift, m2, pivot - farthest, pivot + farthest)
+
+    def _plain(self, key: np.uint64, first: int, count: int) -> Moments:
+        """Return the moments by NumPy, or say which value is none."""
+        with np.errstate(all="ignore") if isinstance(self.function, Kernel) else nullcontext():
+            values = np.asarray(self.function(*points(key, first, count), *self.parameters), dtype=np.float64)
+        if values.shape not in ((), (count,)):
+            raise ParameterError("function", values.shape, f"one that returns shape ({count},)")
+        values = np.broadcast_to(values, (count,))
+        bad = np.flatnonzero(~np.isfinite(values))
+        if len(bad):
+            value, sample = float(values[bad[0]]), first + int(bad[0])
+            raise NonFiniteError(
+                f"{self._name} returned {value} as sample {sample}", value=value, sample=sample
+            )
+        return Moments.of(values)
+
+    @property
+    def _name(self) -> str:
+        return str(getattr(self.function, "__qualname__", type(self.function).__qualname__))
+
+
+def processors() -> int:
+    """Return how many processors this process may use.
+
+    >>> processors() >= 1
+    True
+    """
+    if sys.platform == "emscripten":  # a browser, where no thread can be started
+        return 1
+    affinity = getattr(os, "sched_getaffinity", None)
+    return len(affinity(0)) if affinity else os.cpu_count() or 1
+
+
+def fused_mean(
+    function: Any,
+    parameters: tuple[float, ...] = (),
+    *,
+    samples: int,
+    rng: int | np.random.Generator | None = None,
+    workers: int | None = None,
+    method: str = "Monte Carlo",
+) -> Estimate:
+    """Return the mean of ``function(u0, u1, *parameters)`` over the unit square, by Monte Carlo.
+
+    Sample i of a seed is the same whoever draws it, and the blocks' moments are merged in their order: the
+    answer is the same to the last bit for any number of threads. Memory does not grow with ``samples``.
+
+    Parameters
+    ----------
+    function : Kernel or callable
+        Of two numbers in [0, 1) and the parameters; a callable that is no kernel is given arrays.
+    parameters : tuple of float
+    samples : int
+        At least 2.
+    rng : int, numpy.random.Generator or None
+        The seed, a generator to draw one from, or None for fresh entropy.
+    workers : int, optional
+        Threads; by default as many as there are processors, and one for a callable that is no kernel.
+    method : str
+        What the estimate says of its method.
+
+    Raises
+    ------
+    ParameterError
+        When an argument is out of its range.
+    NonFiniteError
+        When a value is NaN or infinite, naming the sample.
+
+    >>> estimate = fused_mean(lambda u0, u1: u0 * u1, samples=100_000, rng=1, workers=1)
+    >>> estimate.covers(0.25, level=0.9999)
+    True
+    """
+    count = workers
+    if count is None:
+        count = processors() if isinstance(function, Kernel) else 1
+    if type(count) is not int or count < 1:
+        raise ParameterError("workers", workers, "an integer, at least 1, or None")
+    draw = FusedDraw(function, tuple(map(float, parameters)))
+    draw.prepare()
+    if count == 1 or type(samples) is not int or samples <= BLOCK:
+        return mean(draw, samples=samples, rng=rng, block=BLOCK, method=method)
+    with ThreadPoolExecutor(count) as pool:
+        return mean(draw, samples=samples, rng=rng, block=BLOCK, method=method, executor=pool)
