@@ -31,6 +31,9 @@ MOST = 8
 FEWEST = 19
 """Angles of the coarsest scan."""
 
+ENOUGH = 300_000
+"""Evaluations that tell which side of the limit an albedo is on, unless it is very near."""
+
 THREE_RULES = 4096
 """Evaluations without which a quadrature cannot bound its error."""
 
@@ -104,12 +107,16 @@ def scan_supremum(f: BSDF, *, fixed: Side, turns: bool, budget: int, tolerance: 
     share = max(left // (2 * len(tops)), THREE_RULES)
 
     def integrate(index: int, direction: FloatArray, **tolerances: Any) -> Estimate:
+        """Integrate with few evaluations, and with all that are left only where the limit is in doubt."""
         nonlocal evaluations
         width = None if rich or aim.retro[index] else float(aim.width[index])
-        found = directional_albedo(
-            f, direction, fixed=fixed, width=width, max_evaluations=share, **tolerances
-        )
-        evaluations += found.evaluations
+        for most in dict.fromkeys((min(share, ENOUGH), share)):
+            found = directional_albedo(
+                f, direction, fixed=fixed, width=width, max_evaluations=most, **tolerances
+            )
+            evaluations += found.evaluations
+            if found.converged or np.all(np.abs(found.value - 1) > found.error + tolerance):
+                break
         return found
 
     for index in tops:
