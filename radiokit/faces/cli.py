@@ -162,7 +162,7 @@ def albedo(
     target: Target,
     theta: Theta = 0.0,
     phi: Phi = 0.0,
-    method: Annotated[str, typer.Option(help="quadrature or mc.")] = "quadrature",
+    method: Annotated[str, typer.Option(help="quadrature, mc or qmc.")] = "quadrature",
     rtol: Annotated[float, typer.Option(help="Relative error asked of the quadrature.")] = 1e-6,
     samples: Annotated[int, typer.Option(help="Samples for Monte Carlo.")] = 1 << 20,
     seed: Annotated[int | None, typer.Option(help="Seed for Monte Carlo.")] = None,
