@@ -1,4 +1,4 @@
-"""The command line: ``radiokit validate``, ``check``, ``albedo``, ``cases`` and ``lobe``."""
+"""The command line: ``radiokit validate``, ``check``, ``albedo``, ``cases``, ``bench`` and ``lobe``."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
+from radiokit.faces.bench.command import bench
 from radiokit.faces.console import fail, progress_bar, show_json, show_report, show_table, write
 from radiokit.facts.errors import RadiokitError
 
@@ -233,6 +234,9 @@ def _show_case(each: Any) -> None:
     write(f"  derivation: {each.derivation}")
     write(f"  source: {each.source.cite()}")
     write(f"  methods: {', '.join(each.methods)}")
+
+
+app.command()(bench)
 
 
 @app.command(context_settings=_OPEN)
