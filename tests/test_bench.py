@@ -113,7 +113,7 @@ def test_errors_fall_as_they_should(name, seed):
     sampled = sized("mc", "qmc", sizes=tuple(4**k for k in range(5, 10)))
     slopes = {each.method: each for each in fit(measure(task, rule + sampled, seed=seed % 1000, repeats=12))}
     assert slopes["mc"].law == slopes["qmc"].law == "power"
-    assert slopes["mc"].rate == pytest.approx(-0.5, abs=0.12)
+    assert slopes["mc"].rate == pytest.approx(-0.5, abs=0.2)
     assert slopes["mc"].claimed_rate == pytest.approx(-0.5, abs=0.03)
     assert slopes["qmc"].claimed_rate <= -0.9
     assert slopes["qmc"].rate <= -0.9
@@ -137,21 +137,37 @@ def test_a_power_law_is_not_called_geometric():
 
 def test_calls_take_turns():
     order = []
-    interleave(
-        [lambda i: order.append("a") or time.sleep(5e-3), lambda i: order.append("b") or time.sleep(5e-3)], 3
-    )
+
+    def slow(name):
+        order.append(name)
+        time.sleep(5e-3)
+
+    interleave([lambda i: slow("a"), lambda i: slow("b")], 3)
     assert "".join(order) == "aabb" + "ab" * 3
+
+
+def test_events_too_rare_to_be_drawn_are_told_from_lies(seed):
+    task = next(task for task in tasks() if task.name == "ggx-0.001-at-0deg")
+    rows = measure(task, sized("mc", sizes=(1024,)), seed=seed % 1000, repeats=3)
+    assert rows[0].rare
+    assert rows[0].honest
+    assert rows[0].true_error == pytest.approx(1 - task.exact, rel=1e-3)
 
 
 def test_planted_claims_that_are_too_small_are_seen(seed):
     task = tasks(quick=True)[1]
     for kind, error in (("truncation", 1e-9), ("statistical", 1e-6)):
         liar = Method(
-            "liar", "n", (1,), (), lambda f, wo, n, s, k=kind, e=error: Estimate(task.exact + 1e-5, e, k, 1)
+            "liar",
+            "n",
+            (1,),
+            (),
+            lambda f, wo, n, s, k=kind, e=error: Estimate(task.exact + 1e-3, e, k, 10**6),
         )
         honest = Method("honest", "n", (1,), (), lambda f, wo, n, s, k=kind: Estimate(task.exact, 1e-5, k, 1))
         first, second = measure(task, [liar, honest], repeats=3)
         assert not first.honest
+        assert not first.rare
         assert second.honest
 
 
@@ -171,11 +187,8 @@ def test_a_peer_agrees_with_the_truth_within_its_error(peer, alpha, theta, seed)
     answer = peer.answer(alpha, theta, 1 << 18, seed)
     assert z_test(answer, truth) > sidak(LEVEL, 3 * len(PRESENT))
     assert z_test(answer, 1.02 * truth) < LEVEL
-    assert (
-        answer.value
-        == peer.answer(alpha, theta, 1 << 18, seed).value
-        != peer.answer(alpha, theta, 1 << 18, seed + 1).value
-    )
+    assert answer.value == pytest.approx(peer.answer(alpha, theta, 1 << 18, seed).value, rel=1e-12)
+    assert abs(answer.value - peer.answer(alpha, theta, 1 << 18, seed + 1).value) > 1e-9
 
 
 @pytest.mark.skipif(Compiled().absent() is not None, reason="no C compiler")
@@ -254,16 +267,18 @@ def quiet(data, noise=0.01):
 def test_a_planted_slowdown_is_detected_and_noise_is_not(found):
     data = quiet(found.to_json())
     for factor in (1.25, 2.0):
-        changes = compare(data, changed(data, "mc", relative_seconds=factor))
+        changes = compare(data, changed(data, "mc", relative_seconds=factor, relative_best=factor))
         assert {change.kind for change in changes} == {"slower"}
         assert any(change.what == "mc, all rows" for change in changes)
         assert all("mc" in change.what for change in changes)
-    assert len(compare(data, changed(data, "mc", relative_seconds=2.0))) == 12 + 1
-    assert compare(data, changed(data, "mc", relative_seconds=0.5)) == []
-    assert compare(data, changed(data, "mc", relative_seconds=1.1)) == []
+    assert len(compare(data, changed(data, "mc", relative_seconds=2.0, relative_best=2.0))) == 12 + 1
+    assert compare(data, changed(data, "mc", relative_seconds=0.5, relative_best=0.5)) == []
+    assert compare(data, changed(data, "mc", relative_seconds=1.1, relative_best=1.1)) == []
+    assert compare(data, changed(data, "mc", relative_seconds=3.0)) == []  # a burst that not all calls met
     loud = quiet(data, noise=0.3)
     one = copy.deepcopy(loud)
     one["rows"][0]["relative_seconds"] *= 2.0
+    one["rows"][0]["relative_best"] *= 2.0
     assert compare(loud, one) == []
     assert "evaluations in place of" in compare(data, changed(data, "quadrature", evaluations=2))[0].message
 
@@ -290,7 +305,7 @@ def test_a_claim_that_no_longer_holds_or_converges_or_is_gone_is_detected(found)
     data = found.to_json()
     new = copy.deepcopy(data)
     new["rows"][8] |= {"honest": False, "claimed_error": 1e-20, "true_error": 1e-3}
-    assert [change.kind for change in compare(data, new)][0] == "less accurate"
+    assert compare(data, new)[0].kind == "less accurate"
     new = copy.deepcopy(data)
     new["rows"][8]["converged"] = False
     assert [change.message for change in compare(data, new)] == ["it no longer converges"]
@@ -315,7 +330,7 @@ def test_the_command_compares_with_an_earlier_run(run, tmp_path, monkeypatch, fo
     assert (code, err) == (0, "")
     assert "nothing is slower or less accurate than in" in out
     assert "radiokit / peer" in out
-    better = changed(quiet(found.to_json()), "mc", relative_seconds=0.1)
+    better = changed(quiet(found.to_json()), "mc", relative_seconds=0.1, relative_best=0.1)
     path.write_text(json.dumps(better), encoding="utf-8")
     monkeypatch.setattr(comparing, "NOISE", 0.0)
     code, out, _ = run("bench", "--quick", "--compare", str(path))

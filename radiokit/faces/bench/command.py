@@ -100,6 +100,9 @@ def _show(found: Any) -> None:
             for each in found.starts
         ],
     )
+    rare = sum(each.rare for each in found.rows)
+    if rare:
+        write(f"{rare} standard errors miss events too rare to have been drawn (narrow lobes)")
     for each in found.dishonest:
         write(
             f"claims too little: {each.task} by {each.method} ({each.size:g}): an error of "

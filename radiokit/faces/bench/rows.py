@@ -24,7 +24,12 @@ LEVEL = 1e-9
 
 @dataclass(frozen=True)
 class Row:
-    """One method at one size on one task; errors are root mean squares over the repetitions' seeds."""
+    """One method at one size on one task; errors are root mean squares over the repetitions' seeds.
+
+    ``honest`` is False when an error is larger than what was claimed allows. ``rare`` is True when a standard
+    error is too small because what it lacks are events too rare to have been drawn, as no sampling can know:
+    a lobe of α = 0.001 loses its light in one of a million samples.
+    """
 
     task: str
     method: str
@@ -35,12 +40,15 @@ class Row:
     claimed_error: float | None
     kind: str | None
     honest: bool
+    rare: bool
     converged: bool
     evaluations: int
     seconds: float
     noise: float
     relative_seconds: float
-    """Seconds in units of the standard work that was timed in between."""
+    """Seconds in units of the standard work that was timed in between, by the medians."""
+    relative_best: float
+    """The same by the shortest times, which a busy machine disturbs least."""
 
     @property
     def throughput(self) -> float:
@@ -60,12 +68,16 @@ class Row:
         return {name: jsonable(value) for name, value in (asdict(self) | more).items()}
 
 
-def row(task: str, method: str, size: float, exact: float, timing: Timing, unit: float) -> Row:
+def row(task: str, method: str, size: float, exact: float, timing: Timing, unit: Timing) -> Row:
     """Return the row of a timing whose results are Estimates, or values with their evaluations."""
     found = [r if isinstance(r, Estimate) else Estimate(r[0], 0.0, "rounding", r[1]) for r in timing.results]
     claims = isinstance(timing.results[0], Estimate)
     off = np.array([float(each.value) - exact for each in found])
     errors = np.array([float(each.error) for each in found])
+    honest = not claims or _honest(found, exact)
+    # N samples miss an event of probability p with probability exp(−pN); it adds 1 or so to a sample.
+    reach = -math.log(LEVEL) * max(1.0, abs(exact)) / max(1, found[-1].evaluations)
+    rare = not honest and not found[0].is_bound and bool(np.all(np.abs(off) <= errors * 6 + reach))
     return Row(
         task=task,
         method=method,
@@ -75,12 +87,14 @@ def row(task: str, method: str, size: float, exact: float, timing: Timing, unit:
         true_error=_rms(off),
         claimed_error=_rms(errors) if claims else None,
         kind=found[0].kind if claims else None,
-        honest=not claims or _honest(found, exact),
+        honest=honest or rare,
+        rare=rare,
         converged=all(each.converged for each in found),
         evaluations=found[-1].evaluations,
         seconds=timing.median,
-        noise=timing.noise,
-        relative_seconds=timing.median / unit,
+        noise=math.hypot(timing.noise, unit.noise),
+        relative_seconds=timing.median / unit.median,
+        relative_best=timing.best / unit.best,
     )
 
 

@@ -184,7 +184,7 @@ def measure(
     calls += [partial(call, method, size) for method, size in todo]
     unit, *timings = interleave(calls, repeats)
     return [
-        row(task.name, method.name, size, task.exact, timing, unit.median)
+        row(task.name, method.name, size, task.exact, timing, unit)
         for (method, size), timing in zip(todo, timings, strict=True)
     ]
 
@@ -216,7 +216,7 @@ def measure_peers(
     parties = [(method, size, exact) for method, size in sizes.items()]
     parties += [(peer.name, sizes[peer.rival], peer.truth(alpha, theta_deg)) for peer in peers]
     rows = [
-        row(name, party, size, truth, timing, unit.median)
+        row(name, party, size, truth, timing, unit)
         for (party, size, truth), timing in zip(parties, timings, strict=True)
     ]
     by_name = {each.method: each for each in rows}
