@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
+from radiokit.faces.bench.rows import size_text
 from radiokit.faces.console import progress_bar, show_json, show_table, write
 
 __all__ = ["bench"]
@@ -64,7 +65,7 @@ def _show(found: Any) -> None:
             (
                 each.task,
                 each.peer,
-                f"{each.rival}, {each.size:g}",
+                f"{each.rival}, {size_text(each.size)}",
                 f"{each.speed:.3g} ± {100 * each.noise:.0f} %",
                 _number(each.efficiency),
                 _number(each.qmc_efficiency),
@@ -74,6 +75,8 @@ def _show(found: Any) -> None:
             for each in found.ratios
         ],
     )
+    for name, note in found.notes.items():
+        write(f"{name}: {note}")
     for name, reason in found.absent.items():
         write(f"no row for {name}: {reason}")
     show_table(
@@ -105,7 +108,7 @@ def _show(found: Any) -> None:
         write(f"{rare} standard errors miss events too rare to have been drawn (narrow lobes)")
     for each in found.dishonest:
         write(
-            f"claims too little: {each.task} by {each.method} ({each.size:g}): an error of "
+            f"claims too little: {each.task} by {each.method} ({size_text(each.size)}): an error of "
             f"{each.true_error:.1e}, claimed {each.claimed_error:.1e}"
         )
 
@@ -122,7 +125,7 @@ def _methods(rows: Any) -> Iterator[tuple[Any, ...]]:
         worst = max(group, key=lambda each: each.true_error / abs(each.exact))
         yield (
             method,
-            f"{size:g}",
+            size_text(size),
             f"{median(each.true_error / abs(each.exact) for each in group):.1e}",
             f"{worst.true_error / abs(worst.exact):.1e}",
             worst.task,

@@ -10,6 +10,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any, Literal
 
+from radiokit.faces.bench.rows import size_text
 from radiokit.facts.errors import RadiokitError
 
 __all__ = ["Change", "compare", "load"]
@@ -74,7 +75,7 @@ def compare(old: dict[str, Any], new: dict[str, Any]) -> list[Change]:
     logs: dict[str, list[float]] = {}
     for key, earlier in before.items():
         later = after.get(key)
-        what = f"{key[0]} by {key[1]} ({key[2]:g})"
+        what = f"{key[0]} by {key[1]} ({size_text(key[2])})"
         if later is None:
             if old.get("settings", {}).get("quick") == new.get("settings", {}).get("quick"):
                 changes.append(Change("gone", what, "it is no longer measured"))

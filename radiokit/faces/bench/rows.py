@@ -13,7 +13,7 @@ from radiokit.faces.bench.timing import Timing
 from radiokit.facts.estimate import Estimate
 from radiokit.facts.jsonable import jsonable
 
-__all__ = ["Row", "Slope", "fit", "row"]
+__all__ = ["Row", "Slope", "fit", "row", "size_text"]
 
 ROUNDING = 1e-14
 """Relative errors below this are rounding, and on no line."""
@@ -115,6 +115,15 @@ def _honest(found: list[Estimate], exact: float) -> bool:
         for b, each in zip(beyond, found, strict=True)
     ]
     return min(p) >= sidak(LEVEL, len(p))
+
+
+def size_text(size: float) -> str:
+    """Return a number of samples or nodes in full, and a tolerance in short.
+
+    >>> size_text(1048576.0), size_text(1e-6)
+    ('1048576', '1e-06')
+    """
+    return f"{size:.0f}" if size >= 1 else f"{size:g}"
 
 
 @dataclass(frozen=True)

@@ -66,6 +66,7 @@ class Bench:
     ratios: tuple[Ratio, ...]
     peers: tuple[Row, ...]
     absent: dict[str, str]
+    notes: dict[str, str]
     rows: tuple[Row, ...]
     truths: dict[str, str]
     slopes: tuple[Slope, ...]
@@ -84,6 +85,7 @@ class Bench:
             "settings": self.settings,
             "machine": self.machine,
             "absent": self.absent,
+            "notes": self.notes,
             "truths": self.truths,
             **{name: [each.to_json() for each in getattr(self, name)] for name in parts},
         }
@@ -149,6 +151,7 @@ def bench(
         ratios=tuple(ratios),
         peers=tuple(beside),
         absent=absent,
+        notes={peer.name: peer.note for peer in present if peer.note},
         rows=tuple(rows),
         truths={task.name: task.truth for task in chosen},
         slopes=tuple(fit(rows)),

@@ -36,6 +36,7 @@ class Mitsuba(Peer):
 
     name = f"Mitsuba {VARIANT}"
     rival = "mc"
+    note = "in single precision; its G is separable, so its error is against the truth of that"
 
     def absent(self) -> str | None:
         """Return why it cannot run; tried in a process of its own, for a wrong LLVM aborts."""

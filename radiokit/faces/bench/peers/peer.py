@@ -18,6 +18,9 @@ class Peer(ABC):
     rival: ClassVar[str]
     """The method of ``radiokit.albedo`` that it is compared with: ``mc`` or ``quadrature``."""
 
+    note: ClassVar[str] = ""
+    """What must be known to read its errors."""
+
     def absent(self) -> str | None:
         """Return why it cannot run here, and what would help; None when it can."""
         return None
