@@ -201,6 +201,12 @@ def test_the_kernel_in_c_covers_and_does_not_repeat_itself(seed):
     assert spread == pytest.approx(values[0].error, rel=0.2)
 
 
+@pytest.mark.skipif(Compiled().absent() is not None, reason="no C compiler")
+def test_loading_the_kernel_leaves_denormals_alone():
+    Compiled().answer(0.3, 60.0, 4096, 1)
+    assert np.float64(1e-310) * np.float64(0.5) > 0
+
+
 def test_what_is_absent_says_why_and_what_helps(monkeypatch, tmp_path):
     assert "name it in CC" in build("no-such-compiler")[1]
     broken = tmp_path / "cc"
