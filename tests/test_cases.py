@@ -244,7 +244,7 @@ def test_names_and_methods_are_looked_up():
     assert list_cases() == sorted(list_cases())
     with pytest.raises(UnknownNameError, match="did you mean 'lambert-in-furnace'"):
         case("lambert-in-furnac")
-    with pytest.raises(UnknownNameError, match="Known: closed form, mc-bsdf, mc-light, mis, quadrature"):
+    with pytest.raises(UnknownNameError, match="Known: closed form, mc-bsdf, mc-light, mis, qmc, quadrature"):
         case("lambert-in-furnace").run("sum")
 
 

@@ -31,7 +31,7 @@ from radiokit.worlds.planning import METHODS
 from radiokit.worlds.scene import irradiance
 from radiokit.worlds.shading import explain, shade
 
-SAMPLED = ("mc-bsdf", "mc-light", "mis")
+SAMPLED = ("mc-bsdf", "mc-light", "mis", "qmc")
 LEVEL = sidak(1e-3, 100)  # all statistical tests in this file
 
 

@@ -15,6 +15,7 @@ from radiokit.contracts.bsdf import BSDF, FloatArray
 from radiokit.facts.directions import check_directions
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
+from radiokit.measure import lowdiscrepancy
 from radiokit.measure.montecarlo import mean
 from radiokit.measure.quadrature import hemisphere
 
@@ -28,7 +29,7 @@ def albedo(
     f: BSDF | Callable[..., Any],
     wo: npt.ArrayLike,
     *,
-    method: Literal["quadrature", "mc"] = "quadrature",
+    method: Literal["quadrature", "mc", "qmc"] = "quadrature",
     rtol: float = 1e-8,
     samples: int = 1 << 20,
     rng: int | np.random.Generator | None = None,
@@ -41,13 +42,15 @@ def albedo(
     f : BSDF or callable
     wo : array_like, shape (3,) or (N, 3)
         Unit vectors above the horizon.
-    method : {"quadrature", "mc"}
-        Quadrature gives a bound; Monte Carlo samples the BSDF and gives a standard error. A model with a
-        weight kernel is sampled by machine code on all processors, with the same answer on any number.
+    method : {"quadrature", "mc", "qmc"}
+        Quadrature gives a bound; Monte Carlo samples the BSDF and gives a standard error, with random points
+        or (``qmc``) with sixteen randomly shifted lattices. For ``mc``, a model with a weight kernel is sampled
+        by machine code on all processors, with the same answer on any number.
     rtol : float
         Relative error asked of the quadrature.
     samples, rng
-        For Monte Carlo: the number of samples for each direction, and the seed.
+        For Monte Carlo: the number of samples for each direction (``qmc`` rounds it down to 16 times a power
+        of 2), and the seed.
     fixed : {"wo", "wi"}
         Hold ``wi`` fixed instead and integrate over wo: what a ray of light from there loses.
 
@@ -82,13 +85,14 @@ def albedo(
         raise ParameterError("fixed", fixed, "'wo' or 'wi'")
     if method == "quadrature":
         one = lambda w: directional_albedo(model, w, fixed=fixed, rtol=rtol)  # noqa: E731
-    elif method == "mc":
+    elif method in ("mc", "qmc"):
         if fixed == "wi":
             raise ParameterError("method", method, "'quadrature' when wi is held fixed")
         seed = int(np.random.default_rng(rng).integers(1 << 63))
-        one = lambda w: _monte_carlo(model, w, samples, seed)  # noqa: E731
+        sampled = _monte_carlo if method == "mc" else _low_discrepancy
+        one = lambda w: sampled(model, w, samples, seed)  # noqa: E731
     else:
-        raise ParameterError("method", method, "'quadrature' or 'mc'")
+        raise ParameterError("method", method, "'quadrature', 'mc' or 'qmc'")
     if wo.ndim == 1:
         return one(wo)
     start = time.perf_counter()
@@ -103,6 +107,7 @@ def albedo(
         found[0].method if found else method,
         all(estimate.converged for estimate in found),
         "; ".join(notes),
+        found[0].dof if found else None,
     )
 
 
@@ -171,3 +176,12 @@ def _monte_carlo(model: BSDF, wo: FloatArray, samples: int, seed: int) -> Estima
         return model.sample(generator.random((n, 2)), np.broadcast_to(wo, (n, 3)))[1]
 
     return mean(draw, samples=samples, rng=seed, method=method)
+
+
+def _low_discrepancy(model: BSDF, wo: FloatArray, samples: int, seed: int) -> Estimate:
+    def draw(u: FloatArray) -> Any:
+        return model.sample(u, np.broadcast_to(wo, (len(u), 3)))[1]
+
+    return lowdiscrepancy.mean(
+        draw, dimensions=2, samples=samples, rng=seed, method="shifted lattices, BSDF-sampled"
+    )

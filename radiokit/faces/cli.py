@@ -1,4 +1,4 @@
-"""The command line: ``radiokit validate``, ``check``, ``albedo``, ``cases``, ``stability`` and ``lobe``."""
+"""The command line: ``radiokit validate``, ``check``, ``albedo``, ``cases``, and what other files add."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from typing import Annotated, Any
 
 import typer
 
+from radiokit.faces.bench.command import bench
 from radiokit.faces.console import fail, progress_bar, show_json, show_report, show_table, write
+from radiokit.faces.stability.command import stability
 from radiokit.facts.errors import RadiokitError
 
 __all__ = ["app", "main"]
@@ -162,7 +164,7 @@ def albedo(
     target: Target,
     theta: Theta = 0.0,
     phi: Phi = 0.0,
-    method: Annotated[str, typer.Option(help="quadrature or mc.")] = "quadrature",
+    method: Annotated[str, typer.Option(help="quadrature, mc or qmc.")] = "quadrature",
     rtol: Annotated[float, typer.Option(help="Relative error asked of the quadrature.")] = 1e-6,
     samples: Annotated[int, typer.Option(help="Samples for Monte Carlo.")] = 1 << 20,
     seed: Annotated[int | None, typer.Option(help="Seed for Monte Carlo.")] = None,
@@ -235,32 +237,8 @@ def _show_case(each: Any) -> None:
     write(f"  methods: {', '.join(each.methods)}")
 
 
-@app.command()
-def stability(
-    name: Annotated[str | None, typer.Argument(help="One row, with its lesson; without it, all.")] = None,
-    json: Json = False,
-    figures: Annotated[Path | None, typer.Option(help="Folder to draw the diagram into.")] = None,
-) -> None:
-    """Measure every kernel, and the textbook's formula beside it, where that loses its digits."""
-    from radiokit.faces.stability.measure import stability as run
-
-    found = run(name)
-    drawn = None
-    if figures is not None:
-        from radiokit.faces.plots.stability import draw_row, draw_stability
-
-        one, path = found[0], figures / ("stability.png" if name is None else f"stability-{name}.png")
-        drawn = draw_stability(found, path) if name is None else draw_row(one, path)
-    if json:
-        rows = [result.to_json() for result in found]
-        show_json({"rows": rows, "figures": [] if drawn is None else [str(drawn)]})
-    else:
-        from radiokit.faces.stability.show import show_row, show_rows
-
-        show_rows(found) if name is None else show_row(found[0])
-        if drawn is not None:
-            write(f"stability diagram: {drawn}")
-    _exit(max(result.exit_code for result in found))
+app.command()(bench)
+app.command()(stability)
 
 
 @app.command(context_settings=_OPEN)

@@ -11,7 +11,7 @@ import numpy as np
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.jsonable import jsonable
 
-__all__ = ["Estimate", "Kind", "rounding"]
+__all__ = ["Estimate", "Kind", "rounding", "student_widening"]
 
 Kind = Literal["rounding", "truncation", "statistical"]
 _KINDS = ("rounding", "truncation", "statistical")
@@ -37,6 +37,9 @@ class Estimate:
     converged : bool
         False when the requested tolerance was not reached; ``note`` then says why.
     note : str
+    dof : float, optional
+        Degrees of freedom of a standard error that comes from few independent replicates. ``error`` is then
+        widened by ``student_widening``; None for many samples.
 
     >>> estimate = Estimate(0.5, 0.01, "statistical", evaluations=1000)
     >>> print(estimate)
@@ -54,6 +57,7 @@ class Estimate:
     method: str = ""
     converged: bool = True
     note: str = ""
+    dof: float | None = None
 
     def __post_init__(self) -> None:
         if self.kind not in _KINDS:
@@ -66,11 +70,25 @@ class Estimate:
         """True when ``error`` is a bound, False when it is a standard error."""
         return self.kind != "statistical"
 
+    @property
+    def efficiency(self) -> Any:
+        """The reciprocal of variance times time, 1/(error² · seconds); None for a bound, or an unknown time.
+
+        It does not grow with the number of samples of a Monte Carlo mean, and so compares methods.
+
+        >>> Estimate(0.5, 0.1, "statistical", seconds=2.0).efficiency.round(6).item()
+        50.0
+        """
+        if self.is_bound or not self.seconds > 0:
+            return None
+        with np.errstate(divide="ignore"):
+            return np.divide(1.0, np.square(self.error) * self.seconds)
+
     def interval(self, level: float = 0.95) -> tuple[Any, Any]:
         """Return the interval that holds the truth: surely for a bound, with ``level`` otherwise."""
         if not 0 < level < 1:
             raise ParameterError("level", level, "in (0, 1)")
-        factor = 1.0 if self.is_bound else NormalDist().inv_cdf(0.5 + level / 2)
+        factor = 1.0 if self.is_bound else _quantile(0.5 + level / 2, self.dof)
         return self.value - factor * self.error, self.value + factor * self.error
 
     def covers(self, exact: Any, level: float = 0.95) -> bool:
@@ -111,6 +129,8 @@ class Estimate:
             " + ".join(dict.fromkeys(filter(None, (self.method, other.method)))),
             self.converged and other.converged,
             "; ".join(dict.fromkeys(filter(None, (self.note, other.note)))),
+            # The sum has at least as many (Welch, Satterthwaite), so that its interval is not too short.
+            min(filter(None, (self.dof, other.dof)), default=None),
         )
 
     def __float__(self) -> float:
@@ -124,7 +144,37 @@ class Estimate:
 
     def to_json(self) -> dict[str, Any]:
         """Return the estimate as JSON-ready data."""
-        return {name: jsonable(getattr(self, name)) for name in self.__dataclass_fields__}
+        return {name: jsonable(getattr(self, name)) for name in (*self.__dataclass_fields__, "efficiency")}
+
+
+def student_widening(dof: float) -> float:
+    """Return t/z, the ratio of Student's quantile and the normal one at 95 %, two-sided.
+
+    A standard error from ``dof`` + 1 replicates, times this, covers 95 % when it is read as a normal one.
+    Good to 2e-5 from 7 degrees of freedom on.
+
+    Source: Abramowitz, Stegun (1964), Handbook of Mathematical Functions, 26.7.5.
+
+    >>> round(student_widening(15) * 1.959963985, 4)
+    2.1314
+    """
+    z = NormalDist().inv_cdf(0.975)
+    terms = (
+        (z**2 + 1) / 4,
+        (5 * z**4 + 16 * z**2 + 3) / 96,
+        (3 * z**6 + 19 * z**4 + 17 * z**2 - 15) / 384,
+        (79 * z**8 + 776 * z**6 + 1482 * z**4 - 1920 * z**2 - 945) / 92160,
+    )
+    return 1 + sum(term / dof**power for power, term in enumerate(terms, start=1))
+
+
+def _quantile(p: float, dof: float | None) -> float:
+    """Return the quantile by which a standard error counts: Student's over the widening, or the normal."""
+    if dof is None:
+        return NormalDist().inv_cdf(p)
+    from scipy.special import stdtrit
+
+    return float(stdtrit(dof, p)) / student_widening(dof)
 
 
 def rounding(value: Any, *, ulps: float = 4.0, method: str = "closed form") -> Estimate:

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from radiokit.facts.errors import ParameterError
-from radiokit.facts.estimate import Estimate
+from radiokit.facts.estimate import Estimate, student_widening
 
 __all__ = ["ChiSquare", "bernstein_test", "binomial_interval", "chi_square", "sidak", "z_test"]
 
@@ -45,6 +45,8 @@ def sidak(level: float, tests: int) -> float:
 def z_test(estimate: Estimate, exact: npt.ArrayLike) -> Any:
     """Return the two-sided p-value of a Monte Carlo mean, were ``exact`` the truth.
 
+    By the normal distribution, or by Student's where the estimate has few degrees of freedom.
+
     Parameters
     ----------
     estimate : Estimate
@@ -65,7 +67,12 @@ def z_test(estimate: Estimate, exact: npt.ArrayLike) -> Any:
     difference, error = np.broadcast_arrays(np.abs(np.subtract(estimate.value, exact)), estimate.error)
     with np.errstate(divide="ignore", invalid="ignore"):
         z = np.where(difference == 0, 0.0, difference / error)
-    p = np.array([math.erfc(score / math.sqrt(2)) for score in z.flat]).reshape(z.shape)
+    if estimate.dof is None:
+        p = np.array([math.erfc(score / math.sqrt(2)) for score in z.flat]).reshape(z.shape)
+    else:
+        from scipy.special import stdtr
+
+        p = np.asarray(2 * stdtr(estimate.dof, -z * student_widening(estimate.dof)))
     return p if p.ndim else float(p)
 
 

@@ -14,6 +14,7 @@ from radiokit.contracts.blackbox import as_bsdf
 from radiokit.contracts.emitter import Emitter
 from radiokit.facts.directions import check_directions
 from radiokit.facts.errors import ParameterError, RadiokitError, UnknownNameError
+from radiokit.measure.lowdiscrepancy import lattice_samples
 from radiokit.worlds.scene import Receiver, check_emitter
 from radiokit.worlds.terms import DELTA_LIGHT, DELTA_LOBES, MAX_SAMPLES, SMOOTH, Term
 
@@ -21,10 +22,11 @@ __all__ = ["METHODS", "Plan", "Row", "check_direction", "make_plan"]
 
 FloatArray = npt.NDArray[np.float64]
 
-METHODS = ("auto", "sum", "closed form", "quadrature", "mc", "mc-bsdf", "mc-light", "mis")
-"""What ``shade`` understands; ``mc`` stands for the Monte Carlo method that suits the term best."""
+METHODS = ("auto", "sum", "closed form", "quadrature", "mc", "mc-bsdf", "mc-light", "mis", "qmc")
+"""What ``shade`` understands; ``mc`` stands for the Monte Carlo method that suits the term best, and ``qmc``
+for that method with low-discrepancy points."""
 
-_SAMPLED = ("mc-bsdf", "mc-light", "mis")
+_SAMPLED = ("mc-bsdf", "mc-light", "mis", "qmc")
 
 
 @dataclass(frozen=True)
@@ -139,8 +141,7 @@ def make_plan(
 def _row(term: Term, method: str, rtol: float, samples: int | None) -> Row:
     """Choose the method of one term; delta lights and delta lobes are exact whatever was asked for."""
     options = _options(term)
-    best = _best_sampling(term)
-    wanted = best if method == "mc" else method
+    wanted = term.best_sampling if method == "mc" else method
     exact = term.part != SMOOTH or options == ("sum",)
     if method == "auto" or (exact and wanted not in options):
         chosen = options[0]
@@ -172,12 +173,6 @@ def _options(term: Term) -> tuple[str, ...]:
     return options
 
 
-def _best_sampling(term: Term) -> str:
-    """An environment shines from everywhere: the material's samples suffice, if it has a sampler."""
-    everywhere = not term.light.delta and term.light.dome(term.receiver.origin) is not None
-    return "mc-bsdf" if everywhere and getattr(term.f, "has_sampler", True) else "mis"
-
-
 def _name(term: Term) -> str:
     return f"{term.light.name}, {term.part}"
 
@@ -204,6 +199,7 @@ def _why(term: Term, method: str) -> str:
         "mc-bsdf": "samples of the material suffice for a light that is everywhere",
         "mc-light": "asked for: samples of the light",
         "mis": "samples of material and light, weighted by the balance heuristic, miss neither",
+        "qmc": f"low-discrepancy points in place of random ones, put to {term.best_sampling}",
     }[method]
 
 
@@ -224,4 +220,6 @@ def _cost(term: Term, method: str, rtol: float, samples: int | None) -> int:
     if method == "quadrature":
         return 4000 if rtol >= 1e-5 else 8000 if rtol >= 1e-7 else 40000
     count = MAX_SAMPLES if samples is None else samples
+    if method == "qmc":
+        method, count = term.best_sampling, lattice_samples(count)
     return 2 * count if method == "mis" else count

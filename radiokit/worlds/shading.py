@@ -55,12 +55,13 @@ def shade(
         Where the surface is [m].
     method : str
         ``auto``, ``sum``, ``closed form``, ``quadrature``, ``mc-bsdf`` (samples of the material),
-        ``mc-light`` (of the light), ``mis`` (of both, by the balance heuristic), or ``mc``, the best of
-        these.
+        ``mc-light`` (of the light), ``mis`` (of both, by the balance heuristic), ``mc``, the best of these,
+        or ``qmc``, the same with low-discrepancy points.
     rtol : float
         Relative tolerance of each term, in (0, 1).
     samples : int, optional
-        Monte Carlo draws exactly so many for each term. Without it, it stops at ``rtol`` or after 2²⁰.
+        Monte Carlo draws exactly so many for each term; ``qmc`` rounds down to 16 times a power of 2.
+        Without it, it stops at ``rtol`` or after 2²⁰.
     rng : int, numpy.random.Generator or None
         For Monte Carlo.
     executor : concurrent.futures.Executor, optional

@@ -17,6 +17,7 @@ from radiokit.contracts.emitter import Emitter
 from radiokit.facts.errors import NonFiniteError, RadiokitError
 from radiokit.facts.estimate import Estimate
 from radiokit.facts.source import Source
+from radiokit.measure import lowdiscrepancy
 from radiokit.measure.lattice import kronecker
 from radiokit.measure.lune import lune
 from radiokit.measure.montecarlo import mean
@@ -192,18 +193,34 @@ class Term:
         rng: int | np.random.Generator | None,
         executor: Executor | None = None,
     ) -> Estimate:
-        """Estimate by sampling the material, the light, or both with the balance heuristic."""
+        """Estimate by sampling the material, the light, or both with the balance heuristic.
+
+        ``qmc`` does what suits the term best, with low-discrepancy points and without the executor.
+        """
+        strategy = self.best_sampling if method == "qmc" else method
         sampler: Callable[[FloatArray], FloatArray]
-        sampler = {"mc-bsdf": self._from_bsdf, "mc-light": self._from_light, "mis": self._both}[method]
-        dimensions = 4 if method == "mis" else 2
+        sampler = {"mc-bsdf": self._from_bsdf, "mc-light": self._from_light, "mis": self._both}[strategy]
+        dimensions = 4 if strategy == "mis" else 2
+        count = MAX_SAMPLES if samples is None else samples
+        rtol = rtol if samples is None else None
+        if method == "qmc":
+            return lowdiscrepancy.mean(
+                sampler, dimensions=dimensions, samples=count, rtol=rtol, rng=rng, method=f"qmc, {strategy}"
+            )
         return mean(
             partial(_draw, sampler, dimensions),
-            samples=MAX_SAMPLES if samples is None else samples,
-            rtol=rtol if samples is None else None,
+            samples=count,
+            rtol=rtol,
             rng=rng,
             executor=executor,
             method=method,
         )
+
+    @property
+    def best_sampling(self) -> str:
+        """Both, but for an environment, which shines from everywhere: there a material's sampler suffices."""
+        everywhere = not self.light.delta and self.light.dome(self.receiver.origin) is not None
+        return "mc-bsdf" if everywhere and getattr(self.f, "has_sampler", True) else "mis"
 
     def _from_bsdf(self, u: FloatArray) -> FloatArray:
         wi, weight = self.f.sample(u, np.broadcast_to(self.wo, (len(u), 3)))

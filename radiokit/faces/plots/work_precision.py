@@ -10,9 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from radiokit.contracts.albedo import integrand
-from radiokit.contracts.bsdf import BSDF
-from radiokit.measure.slope import gauss_legendre, slope_rule
+from radiokit.faces.bench.methods import classroom_rule, fixed_slope_rule
 from radiokit.worlds.cases.catalogue import Case, case
 
 __all__ = ["FURNACES", "Line", "draw_work_precision", "work_precision"]
@@ -26,6 +24,12 @@ STYLES = {
     "Monte Carlo, BSDF-sampled": ("#1f5fbf", "^"),
     "Monte Carlo, light-sampled": ("#c8553d", "v"),
     "balance heuristic": ("#8e44ad", "D"),
+    "shifted lattices": ("#17a2b8", "P"),
+    "NumPy, whole arrays": ("#444444", "1"),
+    "C, OpenMP": ("#d4a017", "x"),
+    "Mitsuba llvm_ad_rgb": ("#e67e22", "+"),
+    "SciPy dblquad": ("#b03a8c", "<"),
+    "SciPy cubature": ("#7f8c2a", ">"),
 }
 SIZES = (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256)
 SAMPLES = tuple(4**k for k in range(3, 9))
@@ -55,21 +59,31 @@ def work_precision(name: str = FURNACES[0], *, seed: int = 0) -> list[Line]:
     scene: Any = furnace.scene
     f, wo = scene.f, np.asarray(scene.wo)
     lines = [
-        _rule("slope-space rule", lambda n: _slope(f, wo, n), furnace.exact),
-        _rule("Gauss-Legendre in cosθ × φ", lambda n: _classroom(f, wo, n), furnace.exact),
+        _rule("slope-space rule", lambda n: fixed_slope_rule(f, wo, n), furnace.exact),
+        _rule("Gauss-Legendre in cosθ × φ", lambda n: classroom_rule(f, wo, n), furnace.exact),
     ]
     for label, method in (
         ("Monte Carlo, BSDF-sampled", "mc-bsdf"),
         ("Monte Carlo, light-sampled", "mc-light"),
         ("balance heuristic", "mis"),
+        ("shifted lattices", "qmc"),
     ):
         if method in furnace.methods:
             lines.append(_sampled(label, furnace, method, seed))
     return lines
 
 
-def draw_work_precision(path: Path, *, names: Sequence[str] = FURNACES, seed: int = 0) -> Path:
-    """Draw one panel for each furnace case into ``path``, whose folder is made when it is missing."""
+def draw_work_precision(
+    path: Path,
+    *,
+    names: Sequence[str] = FURNACES,
+    seed: int = 0,
+    more: Callable[[str, int], list[Line]] | None = None,
+) -> Path:
+    """Draw one panel for each furnace case into ``path``, whose folder is made when it is missing.
+
+    ``more(name, seed)`` measures further lines of a panel.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -77,17 +91,20 @@ def draw_work_precision(path: Path, *, names: Sequence[str] = FURNACES, seed: in
     FigureCanvasAgg(figure)
     panels = figure.subplots(1, len(names), sharey=True, squeeze=False)[0]
     for axes, name in zip(panels, names, strict=True):
-        _draw_panel(axes, name, seed)
+        lines = work_precision(name, seed=seed) + (more(name, seed) if more else [])
+        _draw_panel(axes, name, lines)
     panels[0].set_ylabel("relative error")
     handles, labels = panels[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), fontsize=8, frameon=False)
+    figure.legend(
+        handles, labels, loc="outside lower center", ncols=min(len(labels), 6), fontsize=8, frameon=False
+    )
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path)
     return path
 
 
-def _draw_panel(axes: Any, name: str, seed: int) -> None:
-    for line in work_precision(name, seed=seed):
+def _draw_panel(axes: Any, name: str, lines: list[Line]) -> None:
+    for line in lines:
         colour, marker = STYLES[line.method]
         milliseconds = np.multiply(1e3, line.seconds)
         error = np.maximum(line.error, FLOOR)
@@ -113,21 +130,6 @@ def _rule(label: str, rule: Callable[[int], float], exact: float) -> Line:
         seconds.append(float(best))
         error.append(abs(value / exact - 1))
     return Line(label, seconds, [n * n for n in SIZES], error)
-
-
-def _slope(f: BSDF, wo: Any, n: int) -> float:
-    wi, weight = slope_rule(wo, f.lobe_width() or 1.0, n, symmetric=True)
-    return float(weight @ integrand(f, wo, "wo")(wi))
-
-
-def _classroom(f: BSDF, wo: Any, n: int) -> float:
-    x, w = gauss_legendre(n)
-    phi = 2 * np.pi * x
-    sine = np.sqrt((1 - x) * (1 + x))
-    wi = np.stack(
-        [np.outer(sine, np.cos(phi)), np.outer(sine, np.sin(phi)), np.repeat(x[:, None], n, axis=1)], axis=-1
-    ).reshape(-1, 3)
-    return float(2 * np.pi * np.outer(w, w).ravel() @ integrand(f, wo, "wo")(wi))
 
 
 def _sampled(label: str, furnace: Case, method: str, seed: int) -> Line:

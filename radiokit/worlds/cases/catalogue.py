@@ -163,7 +163,7 @@ class Case:
             if estimate.is_bound:
                 wrong = bool(np.any(beyond > error))
             else:
-                p_value = float(np.min(z_test(Estimate(beyond, error, "statistical"), 0.0)))
+                p_value = float(np.min(z_test(Estimate(beyond, error, "statistical", dof=estimate.dof), 0.0)))
                 wrong = p_value < level
             doubt = self._doubt(estimate, value, error)
         evidence = Evidence.BOUNDED if estimate.is_bound else Evidence.MEASURED

@@ -26,7 +26,7 @@ _DERIVATION = (
     r"= \frac{\pi L}{2} (1 + \cos\beta) = \pi L \cos^2(\beta/2)$, and $L_o = \rho E/\pi$."
 )
 
-_SAMPLED = ("mc-bsdf", "mc-light", "mis")
+_SAMPLED = ("mc-bsdf", "mc-light", "mis", "qmc")
 
 
 def _tilted(tilt_deg: float) -> Case:

@@ -1,0 +1,144 @@
+"""Command: ``radiokit bench``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from statistics import median
+from typing import Annotated, Any
+
+import typer
+
+from radiokit.faces.bench.rows import size_text
+from radiokit.faces.console import progress_bar, show_json, show_table, write
+
+__all__ = ["bench"]
+
+
+def bench(
+    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    quick: Annotated[bool, typer.Option("--quick", help="A run for continuous integration.")] = False,
+    compare: Annotated[Path | None, typer.Option(help="An earlier run's JSON, to compare with.")] = None,
+    repeats: Annotated[int | None, typer.Option(help="Repetitions, whose medians count; 7, or 3.")] = None,
+    seed: Annotated[int, typer.Option(help="Seed of the Monte Carlo methods.")] = 0,
+    figures: Annotated[Path, typer.Option(help="Folder of the work-precision diagram.")] = Path("figures"),
+    no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw nothing.")] = False,
+) -> None:
+    """Measure accuracy and speed, beside other implementations; exit code 1 if something got worse."""
+    from radiokit.faces.bench.compare import compare as find_changes
+    from radiokit.faces.bench.compare import load
+    from radiokit.faces.bench.run import bench as run
+
+    earlier = None if compare is None else load(compare)
+    with progress_bar("measuring", not json) as progress:
+        found = run(quick=quick, seed=seed, repeats=repeats, progress=progress)
+    changes = [] if earlier is None else find_changes(earlier, found.to_json())
+    drawn = None
+    if not (no_figures or quick):
+        from radiokit.faces.bench.diagram import draw
+
+        drawn = draw(figures / "work-precision-peers.png", seed=seed)
+    if json:
+        more: dict[str, Any] = {"figures": [] if drawn is None else [str(drawn)]}
+        if earlier is not None:
+            more["changes"] = [change.to_json() for change in changes]
+        show_json(found.to_json() | more)
+    else:
+        _show(found)
+        if drawn is not None:
+            write(f"work-precision diagram: {drawn}")
+        for change in changes:
+            write(f"{change.kind}: {change.what}: {change.message}")
+        if earlier is not None and not changes:
+            write(f"nothing is slower or less accurate than in {compare}")
+    if changes or found.dishonest:
+        raise typer.Exit(1)
+
+
+def _show(found: Any) -> None:
+    kinds = ", ".join(f"{name} {value}" for name, value in found.machine.items())
+    write(f"measured in turn, medians of {found.settings['repeats']} repetitions; {kinds}")
+    show_table(
+        "radiokit / peer: how many times faster, and more efficient (1 / (variance × time))",
+        ("albedo", "peer", "radiokit", "faster", "efficiency", "qmc efficiency", "error", "peer's error"),
+        [
+            (
+                each.task,
+                each.peer,
+                f"{each.rival}, {size_text(each.size)}",
+                f"{each.speed:.3g} ± {100 * each.noise:.0f} %",
+                _number(each.efficiency),
+                _number(each.qmc_efficiency),
+                f"{each.error:.1e}",
+                f"{each.peer_error:.1e}",
+            )
+            for each in found.ratios
+        ],
+    )
+    for name, note in found.notes.items():
+        write(f"{name}: {note}")
+    for name, reason in found.absent.items():
+        write(f"no row for {name}: {reason}")
+    show_table(
+        f"all {len(found.truths)} tasks, relative errors",
+        ("method", "size", "median error", "worst error", "on", "evaluations", "ms", "per second"),
+        list(_methods(found.rows)),
+    )
+    show_table(
+        "how the error falls with the evaluations N, or the nodes n along an axis",
+        ("method", "tasks", "law", "median", "from", "to"),
+        list(_slopes(found.slopes)),
+    )
+    show_table(
+        "fresh processes, ms",
+        ("method", "samples", "import radiokit", "first call", "second call"),
+        [
+            (
+                each.method,
+                "" if each.method == "quadrature" else each.samples,
+                f"{1e3 * each.import_seconds:.0f}",
+                f"{1e3 * each.first_seconds:.0f}",
+                f"{1e3 * each.second_seconds:.2f}",
+            )
+            for each in found.starts
+        ],
+    )
+    rare = sum(each.rare for each in found.rows)
+    if rare:
+        write(f"{rare} standard errors miss events too rare to have been drawn (narrow lobes)")
+    for each in found.dishonest:
+        write(
+            f"claims too little: {each.task} by {each.method} ({size_text(each.size)}): an error of "
+            f"{each.true_error:.1e}, claimed {each.claimed_error:.1e}"
+        )
+
+
+def _number(value: float | None) -> str:
+    return "" if value is None else f"{value:.3g}"
+
+
+def _methods(rows: Any) -> Iterator[tuple[Any, ...]]:
+    groups: dict[tuple[str, float], list[Any]] = {}
+    for each in rows:
+        groups.setdefault((each.method, each.size), []).append(each)
+    for (method, size), group in groups.items():
+        worst = max(group, key=lambda each: each.true_error / abs(each.exact))
+        yield (
+            method,
+            size_text(size),
+            f"{median(each.true_error / abs(each.exact) for each in group):.1e}",
+            f"{worst.true_error / abs(worst.exact):.1e}",
+            worst.task,
+            f"{median(each.evaluations for each in group):.0f}",
+            f"{1e3 * median(each.seconds for each in group):.3g}",
+            f"{median(each.throughput for each in group):.2g}",
+        )
+
+
+def _slopes(slopes: Any) -> Iterator[tuple[Any, ...]]:
+    groups: dict[tuple[str, str], list[float]] = {}
+    for each in slopes:
+        groups.setdefault((each.method, each.law), []).append(each.rate)
+    for (method, law), rates in groups.items():
+        shown = (median(rates), min(rates), max(rates))
+        yield (method, len(rates), "N^p" if law == "power" else "q^n", *(f"{rate:.2f}" for rate in shown))
