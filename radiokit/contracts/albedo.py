@@ -44,8 +44,8 @@ def albedo(
         Unit vectors above the horizon.
     method : {"quadrature", "mc", "qmc"}
         Quadrature gives a bound; Monte Carlo samples the BSDF and gives a standard error, with random points
-        or (``qmc``) with sixteen randomly shifted lattices. For ``mc``, a model with a weight kernel is sampled
-        by machine code on all processors, with the same answer on any number.
+        or (``qmc``) with sixteen randomly shifted lattices. For ``mc``, a model with a weight kernel is run
+        as machine code on all processors, with the same answer on any number.
     rtol : float
         Relative error asked of the quadrature.
     samples, rng
