@@ -13,7 +13,7 @@ import numpy.typing as npt
 from radiokit.facts.errors import NonFiniteError
 from radiokit.facts.estimate import Estimate
 
-__all__ = ["BLOCK", "GK21", "Integrand", "RuleSum", "adaptive", "apply_rule", "converge"]
+__all__ = ["BLOCK", "GK21", "ROUNDING", "Integrand", "RuleSum", "adaptive", "apply_rule", "converge"]
 
 FloatArray = npt.NDArray[np.float64]
 Integrand = Callable[[FloatArray], Any]
@@ -65,14 +65,21 @@ def apply_rule(integrand: Integrand, points: FloatArray, weight: FloatArray) -> 
     return RuleSum(value, size, len(points))
 
 
-def converge(rules: Iterable[RuleSum], rtol: float, atol: float, *, smooth: bool = False) -> Estimate:
+def converge(
+    rules: Iterable[RuleSum],
+    rtol: float,
+    atol: float,
+    *,
+    smooth: bool = False,
+    rounding: float = ROUNDING,
+) -> Estimate:
     """Go through ever finer rules until their differences bound the error as asked.
 
     Rules for a smooth integrand agree ever better, each difference a small power of the one before, and
     soon agree to ``SMOOTH``; rules for an integrand with jumps or kinks agree now and then by chance, but
     hardly ever so well. Only agreement to ``SMOOTH`` or better is believed. Without it the error is the
     spread of the last four values, and no less than one row of nodes' share of the whole. All this is left
-    out when the integrand is known to be ``smooth``.
+    out when the integrand is known to be ``smooth``. ``rounding`` is relative to the sum of absolute terms.
     """
     start = time.perf_counter()
     values: list[Any] = []
@@ -83,7 +90,7 @@ def converge(rules: Iterable[RuleSum], rtol: float, atol: float, *, smooth: bool
         values.append(found.value)
         if len(values) < 3:
             continue
-        error = SAFETY * _credible(values, found.size) + ROUNDING * found.size
+        error = SAFETY * _credible(values, found.size) + rounding * found.size
         if smooth:
             enough = np.maximum(atol, rtol * np.abs(found.value))
         else:
