@@ -5,12 +5,16 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from radiokit.contracts.albedo import albedo
+from radiokit.contracts.bsdf import BSDF
 from radiokit.faces.bench.methods import classroom_rule, fixed_slope_rule
+from radiokit.facts.estimate import Estimate
 from radiokit.worlds.cases.catalogue import Case, case
 
 __all__ = ["FURNACES", "Line", "draw_work_precision", "work_precision"]
@@ -25,6 +29,7 @@ STYLES = {
     "Monte Carlo, light-sampled": ("#c8553d", "v"),
     "balance heuristic": ("#8e44ad", "D"),
     "shifted lattices": ("#17a2b8", "P"),
+    "Monte Carlo, compiled": ("#0a2472", "h"),
     "NumPy, whole arrays": ("#444444", "1"),
     "C, OpenMP": ("#d4a017", "x"),
     "Mitsuba llvm_ad_rgb": ("#e67e22", "+"),
@@ -33,6 +38,7 @@ STYLES = {
 }
 SIZES = (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256)
 SAMPLES = tuple(4**k for k in range(3, 9))
+MANY_SAMPLES = tuple(4**k for k in range(4, 12))
 SEEDS = 8
 REPEATS = 3
 FLOOR = 1e-16
@@ -69,8 +75,20 @@ def work_precision(name: str = FURNACES[0], *, seed: int = 0) -> list[Line]:
         ("shifted lattices", "qmc"),
     ):
         if method in furnace.methods:
-            lines.append(_sampled(label, furnace, method, seed))
+            answer = partial(_answer, furnace, method)
+            lines.append(_sampled(label, answer, furnace.exact, seed, SAMPLES))
+    compiled = partial(_albedo, f, wo)
+    compiled(seed, SAMPLES[0])  # compiles, uncounted
+    lines.append(_sampled("Monte Carlo, compiled", compiled, furnace.exact, seed, MANY_SAMPLES))
     return lines
+
+
+def _answer(furnace: Case, method: str, seed: int, samples: int) -> Estimate:
+    return furnace.run(method, seed, samples=samples)
+
+
+def _albedo(f: BSDF, wo: Any, seed: int, samples: int) -> Estimate:
+    return albedo(f, wo, method="mc", samples=samples, rng=seed)
 
 
 def draw_work_precision(
@@ -96,7 +114,7 @@ def draw_work_precision(
     panels[0].set_ylabel("relative error")
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(
-        handles, labels, loc="outside lower center", ncols=min(len(labels), 6), fontsize=8, frameon=False
+        handles, labels, loc="outside lower center", ncols=min(len(labels), 4), fontsize=8, frameon=False
     )
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path)
@@ -132,13 +150,15 @@ def _rule(label: str, rule: Callable[[int], float], exact: float) -> Line:
     return Line(label, seconds, [n * n for n in SIZES], error)
 
 
-def _sampled(label: str, furnace: Case, method: str, seed: int) -> Line:
+def _sampled(
+    label: str, answer: Callable[[int, int], Estimate], exact: float, seed: int, sizes: Sequence[int]
+) -> Line:
     seconds, evaluations, error, claimed = [], [], [], []
-    for samples in SAMPLES:
-        runs = [furnace.run(method, seed + k, samples=samples) for k in range(SEEDS)]
-        off = np.array([run.value - furnace.exact for run in runs]) / furnace.exact
+    for samples in sizes:
+        runs = [answer(seed + k, samples) for k in range(SEEDS)]
+        off = np.array([run.value - exact for run in runs]) / exact
         seconds.append(float(np.min([run.seconds for run in runs])))
         evaluations.append(runs[0].evaluations)
         error.append(float(np.sqrt(np.mean(off**2))))
-        claimed.append(float(np.sqrt(np.mean([run.error**2 for run in runs])) / furnace.exact))
+        claimed.append(float(np.sqrt(np.mean([run.error**2 for run in runs])) / exact))
     return Line(label, seconds, evaluations, error, claimed)
