@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.facts.errors import ParameterError
+from radiokit.facts.checking import numbers, reject, vectors
 from radiokit.facts.source import Source
 
 __all__ = [
@@ -46,46 +46,6 @@ FRAME_SOURCE = Source(
 )
 
 
-def _numbers(name: str, value: Any, allowed: str) -> FloatArray:
-    """Return real numbers as float64, refusing text, booleans, complex numbers and ragged lists."""
-    try:
-        array = np.asarray(value)
-    except (TypeError, ValueError):
-        raise ParameterError(name, _short(value), allowed) from None
-    if array.dtype.kind not in "fiu":
-        raise ParameterError(name, _short(value), allowed)
-    return array.astype(np.float64, copy=False)
-
-
-class _Text(str):
-    """Text that an error message shows without quotation marks."""
-
-    __repr__ = str.__str__
-
-
-def _short(value: Any) -> _Text:
-    text = repr(value.tolist() if isinstance(value, np.ndarray) and value.size <= 12 else value)
-    return _Text(text if len(text) <= 60 else text[:57] + "...")
-
-
-def _reject(name: str, array: FloatArray, bad: npt.NDArray[np.bool_], allowed: str) -> None:
-    """Raise for the first element, or the first row, of ``array`` that ``bad`` marks."""
-    if not bad.any():
-        return
-    index = tuple(int(i) for i in np.argwhere(bad)[0])
-    where = f"{name}[{', '.join(map(str, index))}]" if index else name
-    value = array[index]
-    raise ParameterError(where, tuple(value.tolist()) if value.ndim else float(value), allowed)
-
-
-def _vectors(name: str, value: npt.ArrayLike, allowed: str) -> FloatArray:
-    array = _numbers(name, value, allowed)
-    if array.ndim == 0 or array.shape[-1] != 3:
-        shown = _short(value) if array.size <= 12 else _Text(f"an array of shape {array.shape}")
-        raise ParameterError(name, shown, allowed)
-    return array
-
-
 def check_directions(name: str, value: npt.ArrayLike) -> FloatArray:
     """Return ``value`` as float64 directions, unchanged, once each is known to be a unit vector.
 
@@ -110,10 +70,10 @@ def check_directions(name: str, value: npt.ArrayLike) -> FloatArray:
 vector of shape (..., 3)
     """
     allowed = "a finite unit vector of shape (..., 3)"
-    array = _vectors(name, value, allowed)
+    array = vectors(name, value, allowed)
     with np.errstate(over="ignore", invalid="ignore"):
         good = np.abs(np.sqrt(dot(array, array)) - 1.0) <= UNIT_TOLERANCE
-    _reject(name, array, np.asarray(~good), allowed)
+    reject(name, array, np.asarray(~good), allowed)
     return array
 
 
@@ -160,9 +120,9 @@ def unit(v: npt.ArrayLike) -> FloatArray:
     array([0. , 0.6, 0.8])
     """
     allowed = "a finite vector of shape (..., 3) other than zero"
-    array = _vectors("v", v, allowed)
+    array = vectors("v", v, allowed)
     bad = ~np.isfinite(array).all(axis=-1) | (array == 0.0).all(axis=-1)
-    _reject("v", array, np.asarray(bad), allowed)
+    reject("v", array, np.asarray(bad), allowed)
     return _normalise(array)
 
 
@@ -185,10 +145,10 @@ def spherical_to_cartesian(theta: npt.ArrayLike, phi: npt.ArrayLike) -> FloatArr
     array([0., 0., 1.])
     """
     allowed = "an angle in [-pi, pi] radians"
-    polar = _numbers("theta", theta, allowed)
-    _reject("theta", polar, np.asarray(~(np.abs(polar) <= np.pi + UNIT_TOLERANCE)), allowed)
-    azimuth = _numbers("phi", phi, "a finite angle in radians")
-    _reject("phi", azimuth, np.asarray(~np.isfinite(azimuth)), "a finite angle in radians")
+    polar = numbers("theta", theta, allowed)
+    reject("theta", polar, np.asarray(~(np.abs(polar) <= np.pi + UNIT_TOLERANCE)), allowed)
+    azimuth = numbers("phi", phi, "a finite angle in radians")
+    reject("phi", azimuth, np.asarray(~np.isfinite(azimuth)), "a finite angle in radians")
     polar, azimuth = np.broadcast_arrays(polar, azimuth)
     sine = np.sin(polar)
     return np.stack((sine * np.cos(azimuth), sine * np.sin(azimuth), np.cos(polar)), axis=-1)
@@ -325,8 +285,8 @@ def refract(
     ([-0.4, 0.0, -0.916515], False)
     """
     allowed = "a number in [1e-100, 1e100]"
-    ratio = _numbers("eta", eta, allowed)
-    _reject("eta", ratio, np.asarray(~((ratio >= 1e-100) & (ratio <= 1e100))), allowed)
+    ratio = numbers("eta", eta, allowed)
+    reject("eta", ratio, np.asarray(~((ratio >= 1e-100) & (ratio <= 1e100))), allowed)
     w = np.asarray(w, dtype=np.float64)
     n = np.array([0.0, 0.0, 1.0]) if normal is None else np.asarray(normal, dtype=np.float64)
     cosine = dot(w, n)
@@ -379,8 +339,8 @@ def cap_solid_angle(half_angle: npt.ArrayLike) -> Any:
     (3.141592653589793e-18, True)
     """
     allowed = "an angle in [0, pi] radians"
-    angle = _numbers("half_angle", half_angle, allowed)
-    _reject("half_angle", angle, np.asarray(~((angle >= 0.0) & (angle <= np.pi))), allowed)
+    angle = numbers("half_angle", half_angle, allowed)
+    reject("half_angle", angle, np.asarray(~((angle >= 0.0) & (angle <= np.pi))), allowed)
     return 4.0 * np.pi * np.sin(0.5 * angle) ** 2
 
 
@@ -396,6 +356,6 @@ def cap_half_angle(solid_angle: npt.ArrayLike) -> Any:
     0.5
     """
     allowed = "a solid angle in [0, 4 pi] steradians"
-    omega = _numbers("solid_angle", solid_angle, allowed)
-    _reject("solid_angle", omega, np.asarray(~((omega >= 0.0) & (omega <= 4.0 * np.pi))), allowed)
+    omega = numbers("solid_angle", solid_angle, allowed)
+    reject("solid_angle", omega, np.asarray(~((omega >= 0.0) & (omega <= 4.0 * np.pi))), allowed)
     return 2.0 * np.arctan2(np.sqrt(omega), np.sqrt(4.0 * np.pi - omega))

@@ -1,22 +1,18 @@
-"""Warps: maps of the unit square onto a domain, each a triplet of ``sample``, ``pdf`` and ``invert``.
-
-``invert`` undoes ``sample`` wherever the map is one to one; on a seam, such as the azimuth at a pole, it
-gives one of the points that land there. ``u`` is checked; directions are trusted to be of unit length.
-"""
+"""Warps: maps of the unit square onto the sphere, its caps, and the disk; ``WARPS`` has one of each kind."""
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from numbers import Real
-from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.facts.directions import cap_solid_angle, dot
+from radiokit.facts.directions import cap_solid_angle
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.source import Source
+from radiokit.measure.triangle import UniformTriangle
+from radiokit.measure.warp import ROUNDING, Warp
 
 __all__ = [
     "WARPS",
@@ -33,50 +29,6 @@ FloatArray = npt.NDArray[np.float64]
 
 _BELOW_ONE = float(np.nextafter(1.0, 0.0))
 _TINY = 2.0**-54  # half the spacing of u below 1: the least distance from the rim that a sample keeps
-_SLACK = 2.0**-48  # how far outside its domain rounding may put a sample, relative to the domain
-
-
-class Warp(ABC):
-    """A map of the unit square onto a domain, with the density of what comes out."""
-
-    SOURCE: ClassVar[Source]
-
-    def sample(self, u: npt.ArrayLike) -> FloatArray:
-        """Return the points for ``u`` (N, 2) in [0, 1]²: (N, 3), or (N, 2) for the disk.
-
-        Raises
-        ------
-        ParameterError
-            When ``u`` is not of that shape, or leaves the unit square.
-        """
-        square = np.asarray(u, dtype=np.float64)
-        if square.ndim == 0 or square.shape[-1] != 2:
-            raise ParameterError("u", square.shape, "an array of shape (N, 2)")
-        inside = (square >= 0.0) & (square <= 1.0)
-        if not inside.all():
-            raise ParameterError("u", float(square[~inside][0]), "in [0, 1]")
-        return self._sample(square[..., 0], square[..., 1])
-
-    def pdf(self, points: FloatArray) -> FloatArray:
-        """Return the density (N,) with which ``sample`` makes ``points``, 0 outside the domain.
-
-        Per solid angle [sr⁻¹] for directions, per area [m⁻²] for the disk and the triangle.
-        """
-        return self._pdf(np.asarray(points, dtype=np.float64))
-
-    def invert(self, points: FloatArray) -> FloatArray:
-        """Return the ``u`` (N, 2) in [0, 1)² from which ``sample`` makes ``points``."""
-        u0, u1 = self._invert(np.asarray(points, dtype=np.float64))
-        return np.clip(np.stack((u0, u1), axis=-1), 0.0, _BELOW_ONE) + 0.0  # −0 becomes 0
-
-    @abstractmethod
-    def _sample(self, u0: FloatArray, u1: FloatArray) -> FloatArray: ...
-
-    @abstractmethod
-    def _pdf(self, points: FloatArray) -> FloatArray: ...
-
-    @abstractmethod
-    def _invert(self, points: FloatArray) -> tuple[FloatArray, FloatArray]: ...
 
 
 def _circle(turn: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -123,7 +75,7 @@ class _Cap(Warp):
         return far
 
     def _pdf(self, points: FloatArray) -> FloatArray:
-        return np.where(self._depth_share(points) <= 1.0 + _SLACK, self._density, 0.0)
+        return np.where(self._depth_share(points) <= 1.0 + ROUNDING, self._density, 0.0)
 
     def _invert(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
         return self._depth_share(points), _turn(points[..., 0], points[..., 1])
@@ -226,7 +178,7 @@ class UniformDisk(Warp):
         return np.stack((x, y), axis=-1)
 
     def _pdf(self, points: FloatArray) -> FloatArray:
-        return np.where(np.hypot(points[..., 0], points[..., 1]) <= 1.0 + _SLACK, 1.0 / np.pi, 0.0)
+        return np.where(np.hypot(points[..., 0], points[..., 1]) <= 1.0 + ROUNDING, 1.0 / np.pi, 0.0)
 
     def _invert(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
         x, y = points[..., 0], points[..., 1]
@@ -256,97 +208,6 @@ class CosineHemisphere(Warp):
     def _invert(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
         x, y, z = points[..., 0], points[..., 1], np.maximum(points[..., 2], 0.0)
         return _concentric_inverse(x, y, np.minimum(z * z / (1.0 + np.hypot(x, y)), 1.0))
-
-
-@dataclass(frozen=True, kw_only=True)
-class UniformTriangle(Warp):
-    """Points (N, 3) of equal density on a flat triangle; neighbours in the square stay neighbours.
-
-    Parameters
-    ----------
-    vertices : array_like, shape (3, 3)
-        [m], a corner each row.
-
-    Raises
-    ------
-    ParameterError
-        When the vertices are not three finite points, or lie on a line.
-
-    >>> warp = UniformTriangle(vertices=[[0, 0, 0], [1, 0, 0], [0, 1, 0]])
-    >>> warp.sample([[0.5, 0.5]]).tolist(), warp.area
-    ([[0.25, 0.5, 0.0]], 0.5)
-    """
-
-    vertices: Any
-    _size: float = field(init=False, repr=False, compare=False)  # the longest edge; all else is in its units
-    _normal: FloatArray = field(init=False, repr=False, compare=False)  # its length: twice the area
-    _slack: float = field(init=False, repr=False, compare=False)  # what rounding does to weights of vertices
-
-    SOURCE = Source(
-        authors="Heitz",
-        year=2019,
-        title="A Low-Distortion Map Between Triangle and Square. HAL hal-02073696",
-    )
-
-    def __post_init__(self) -> None:
-        allowed = "three finite points (3, 3) that are not on one line"
-        try:
-            corners = np.array(self.vertices, dtype=np.float64)
-        except (TypeError, ValueError):
-            raise ParameterError("vertices", self.vertices, allowed) from None
-        if corners.shape != (3, 3) or not np.isfinite(corners).all():
-            raise ParameterError("vertices", corners.tolist(), allowed)
-        edges = np.roll(corners, -1, axis=0) - corners
-        lengths = np.hypot(np.hypot(edges[:, 0], edges[:, 1]), edges[:, 2])
-        longest = int(np.argmax(lengths))
-        size = float(lengths[longest])
-        if not 1e-150 <= size <= 1e150:
-            raise ParameterError("vertices", corners.tolist(), allowed)
-        edges /= size
-        normal = np.cross(edges[longest - 2], edges[longest - 1])  # the two shorter edges lose the least
-        height = float(np.sqrt(dot(normal, normal)))
-        slack = _SLACK * (1.0 + float(np.abs(corners).max()) / size) / height if height > 0.0 else 1.0
-        if slack > 0.01:
-            raise ParameterError("vertices", corners.tolist(), allowed)
-        corners.setflags(write=False)
-        for name, value in {"vertices": corners, "_size": size, "_normal": normal, "_slack": slack}.items():
-            object.__setattr__(self, name, value)
-
-    @property
-    def area(self) -> float:
-        """The triangle's area [m²]."""
-        return 0.5 * self._size**2 * float(np.sqrt(dot(self._normal, self._normal)))
-
-    def _sample(self, u0: FloatArray, u1: FloatArray) -> FloatArray:
-        small = 0.5 * np.minimum(u0, u1)
-        large = np.maximum(u0, u1) - small
-        first = np.where(u1 > u0, small, large)[..., None]
-        second = np.where(u1 > u0, large, small)[..., None]
-        third = (1.0 - np.maximum(u0, u1))[..., None]
-        a, b, c = self.vertices
-        points: FloatArray = first * a + second * b + third * c
-        return points
-
-    def _weights(self, points: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return the weights of the first two vertices, and the height over the plane in longest edges."""
-        a, b, c = self.vertices
-        square = dot(self._normal, self._normal)
-        offset = (points - c) / self._size
-        first = dot(np.cross(offset, (b - c) / self._size), self._normal) / square
-        second = dot(np.cross((a - c) / self._size, offset), self._normal) / square
-        return first, second, dot(offset, self._normal) / np.sqrt(square)
-
-    def _pdf(self, points: FloatArray) -> FloatArray:
-        first, second, height = self._weights(points)
-        least = np.minimum(np.minimum(first, second), 1.0 - first - second)
-        inside = (least >= -self._slack) & (np.abs(height) <= self._slack)
-        return np.where(inside, 1.0 / self.area, 0.0)
-
-    def _invert(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
-        first, second, _ = self._weights(points)
-        total = first + second
-        swapped = second > first
-        return np.where(swapped, 2.0 * first, total), np.where(swapped, total, 2.0 * second)
 
 
 WARPS: dict[str, Warp] = {

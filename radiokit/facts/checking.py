@@ -1,0 +1,60 @@
+"""Checking: arguments that must be numbers or vectors, and how a wrong one is shown."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from radiokit.facts.errors import ParameterError
+
+__all__ = ["numbers", "reject", "short", "vectors"]
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def numbers(name: str, value: Any, allowed: str) -> FloatArray:
+    """Return real numbers as float64, refusing text, booleans, complex numbers and ragged lists."""
+    try:
+        array = np.asarray(value)
+    except (TypeError, ValueError):
+        raise ParameterError(name, short(value), allowed) from None
+    if array.dtype.kind not in "fiu":
+        raise ParameterError(name, short(value), allowed)
+    return array.astype(np.float64, copy=False)
+
+
+class _Text(str):
+    """Text that an error message shows without quotation marks."""
+
+    __repr__ = str.__str__
+
+
+def short(value: Any) -> _Text:
+    """Return a value as text that an error message shows without quotation marks, cut where it is long."""
+    text = repr(value.tolist() if isinstance(value, np.ndarray) and value.size <= 12 else value)
+    return _Text(text if len(text) <= 60 else text[:57] + "...")
+
+
+def reject(name: str, array: FloatArray, bad: npt.NDArray[np.bool_], allowed: str) -> None:
+    """Raise for the first element, or the first row, of ``array`` that ``bad`` marks."""
+    if not bad.any():
+        return
+    index = tuple(int(i) for i in np.argwhere(bad)[0])
+    where = f"{name}[{', '.join(map(str, index))}]" if index else name
+    value = array[index]
+    raise ParameterError(where, tuple(value.tolist()) if value.ndim else float(value), allowed)
+
+
+def vectors(name: str, value: npt.ArrayLike, allowed: str) -> FloatArray:
+    """Return real vectors (..., 3) as float64.
+
+    >>> vectors("v", [0, 0, 1], "a vector")
+    array([0., 0., 1.])
+    """
+    array = numbers(name, value, allowed)
+    if array.ndim == 0 or array.shape[-1] != 3:
+        shown = short(value) if array.size <= 12 else _Text(f"an array of shape {array.shape}")
+        raise ParameterError(name, shown, allowed)
+    return array
