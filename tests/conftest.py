@@ -7,6 +7,9 @@ import hashlib
 import numpy as np
 import pytest
 
+from radiokit.faces.plots.offscreen import offscreen
+from radiokit.facts.errors import RadiokitError
+
 
 @pytest.fixture
 def seed(request: pytest.FixtureRequest) -> int:
@@ -18,3 +21,13 @@ def seed(request: pytest.FixtureRequest) -> int:
 def rng(seed: int) -> np.random.Generator:
     """A generator seeded by the test's id."""
     return np.random.default_rng(seed)
+
+
+@pytest.fixture(scope="session")
+def missing_opengl() -> str:
+    """Why nothing can be drawn in three dimensions here; empty where it can."""
+    try:
+        with offscreen():
+            return ""
+    except RadiokitError as error:
+        return str(error)

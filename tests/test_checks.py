@@ -393,3 +393,11 @@ def test_check_refuses_unknown_laws_and_bad_numbers():
 def test_polar_gives_unit_vectors():
     w = polar([1.0, 0.5, 1e-9], [0.0, 1.0, 2.0])
     assert np.linalg.norm(w, axis=1) == pytest.approx([1, 1, 1], abs=1e-15)
+
+
+def test_check_tells_its_progress():
+    seen = []
+    check(
+        lambert(0.5), laws=["values", "reciprocity"], progress=lambda done, total: seen.append((done, total))
+    )
+    assert seen == [(0, 2), (1, 2)]

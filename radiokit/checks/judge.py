@@ -38,6 +38,7 @@ def check(
     tolerance: float = TOLERANCE,
     seconds: float = 60.0,
     tests: int = 1,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Report:
     """Check a BSDF for finite values, reciprocity, energy conservation, and its sampler.
 
@@ -56,6 +57,8 @@ def check(
         Aimed-at time for a slow function: searches become coarser, and say so.
     tests : int
         How many models share the level of the statistical tests.
+    progress : callable, optional
+        Called with the number of finished laws and the number of all, before each law.
 
     Returns
     -------
@@ -91,15 +94,24 @@ def check(
             f"one evaluation takes {cost * 1e3:.2g} ms: the searches are coarser than for a fast function"
         )
     verdicts: list[Verdict] = []
+
+    def step() -> None:
+        if progress is not None:
+            progress(len(verdicts), len(set(chosen)))
+
     if "values" in chosen:
+        step()
         verdicts.append(values(model, count=budget["values"] // 2))
     proved = False
     if "reciprocity" in chosen:
+        step()
         verdicts.append(reciprocity(model, count=budget["reciprocity"] // 2, tolerance=tolerance))
         proved = verdicts[-1].evidence is Evidence.PROVED
     if "energy" in chosen:
+        step()
         verdicts.append(energy(model, tolerance=tolerance, budget=budget["energy"], reciprocal=proved))
     if "sampling" in chosen and getattr(model, "has_sampler", True):
+        step()
         samples = max(budget["sampling"] // len(ANGLES_DEG), 1 << 10)
         verdicts.append(sampling(model, samples=samples, seed=_seed(model), tests=tests))
     if any(v.check == "values" and "asked again" in v.message for v in verdicts):

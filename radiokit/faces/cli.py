@@ -150,7 +150,9 @@ def check(
     from radiokit.checks.judge import LAWS
     from radiokit.checks.judge import check as judge
 
-    report = judge(_load(target, context), laws=law or LAWS, tolerance=tolerance, seconds=seconds)
+    model = _load(target, context)
+    with progress_bar("checking", not json) as progress:
+        report = judge(model, laws=law or LAWS, tolerance=tolerance, seconds=seconds, progress=progress)
     if json:
         show_json(report.to_json())
     else:

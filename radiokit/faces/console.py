@@ -67,12 +67,14 @@ def show_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[Any]]
 @contextmanager
 def progress_bar(title: str, wanted: bool = True) -> Iterator[Callable[[int, int], None] | None]:
     """Show a progress bar on a terminal's standard error, and nothing anywhere else."""
-    console = Console(stderr=True)
+    # Bound to the stream of now: while a stranger's function runs, sys.stderr is caught.
+    console = Console(file=sys.stderr)
     if not (wanted and console.is_terminal):
         yield None
         return
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=console, transient=True) as bar:
+    bars = Progress(*columns, console=console, transient=True, redirect_stdout=False, redirect_stderr=False)
+    with bars as bar:
         task = bar.add_task(title, total=None)
         yield lambda done, total: bar.update(task, completed=done, total=total)
 
