@@ -71,6 +71,12 @@ class BSDF(ABC):
     isotropic: ClassVar[bool] = True
     """Whether f is unchanged by a turn about the normal, and by mirroring at the plane of incidence."""
 
+    transmissive: ClassVar[bool] = False
+    """Whether light passes through: then either direction may be below the horizon, and cosines are |cosθ|."""
+
+    dimensions: ClassVar[int] = 2
+    """How many uniform numbers ``sample`` takes: more than 2 where one of them picks a lobe."""
+
     precision: float = float(np.finfo(float).eps)
     """Rounding unit of the values; larger than float64's for a function that computes in float32."""
 
@@ -84,7 +90,7 @@ class BSDF(ABC):
 
     @abstractmethod
     def evaluate(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
-        """Return f(wi, wo) [sr⁻¹], without delta lobes, 0 below the horizon."""
+        """Return f(wi, wo) [sr⁻¹], without delta lobes; 0 below the horizon unless light passes through."""
 
     @abstractmethod
     def pdf(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
@@ -92,7 +98,7 @@ class BSDF(ABC):
 
     @abstractmethod
     def sample(self, u: FloatArray, wo: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Turn uniform points ``u`` (N, 2) in [0, 1)² into ``wi`` and ``weight = f |cos θi| / pdf``.
+        """Turn uniform points ``u`` (N, dimensions) into ``wi`` and ``weight = f |cos θi| / pdf``.
 
         A sample that is absorbed, or leaves below the horizon, has weight 0.
         """
@@ -124,6 +130,15 @@ class BSDF(ABC):
         factor of 4 costs evaluations, not accuracy.
         """
         return None
+
+    def relative_index(self) -> float:
+        """Return η, the refractive index below the surface over that above it; 1 unless a model refracts.
+
+        f is the ratio of radiance to irradiance, and radiance grows as the square of the index: with n(w) the
+        index on w's side, reciprocity is f(wi, wo) / n(wo)² = f(wo, wi) / n(wi)², and it is for fixed ``wi``
+        that ∫ f |cosθo| dωo, the light reflected and transmitted, is at most 1.
+        """
+        return 1.0
 
     def diffuse_reflectance(self) -> float | None:
         """Return ρ of a model that is ρ/π for every pair of directions above the surface, None for another.
