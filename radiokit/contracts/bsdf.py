@@ -72,7 +72,7 @@ class BSDF(ABC):
     """Whether f is unchanged by a turn about the normal, and by mirroring at the plane of incidence."""
 
     transmissive: ClassVar[bool] = False
-    """Whether light passes through: then either direction may be below the horizon, and cosines are |cosθ|."""
+    """Whether light passes: then either direction may be below the horizon, and the cosine is |cosθ|."""
 
     dimensions: ClassVar[int] = 2
     """How many uniform numbers ``sample`` takes: more than 2 where one of them picks a lobe."""
