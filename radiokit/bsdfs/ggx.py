@@ -12,13 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from radiokit.contracts.bsdf import BSDF, Claims, FloatArray
+from radiokit.contracts.bsdf import Claims
 from radiokit.contracts.parameters import parameter
-from radiokit.facts.directions import dot
+from radiokit.contracts.scalar import Kernels, ScalarBSDF
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.source import Source
 from radiokit.measure.elementary import sincos
-from radiokit.measure.kernels import Kernel, kernel, select
+from radiokit.measure.kernels import kernel, select
 from radiokit.measure.twin import Twin
 from radiokit.physics import fresnel
 from radiokit.physics.fresnel import conductor_kernel
@@ -38,55 +38,90 @@ _HORIZON = 1e-150  # a cosine below this is 0: no unit vector tells them apart, 
 
 
 @kernel
-def _facet(u0: Any, u1: Any, alpha: Any, x: Any, y: Any, z: Any, length: Any, cos_o: Any) -> Any:
-    """Return cosθi, and the squared cosine at the facet: the steps of ``GGX.sample`` for one number each."""
-    up, down = (1.0 - u0) * (1.0 + z), u0 * (1.0 + z)
+def _root(z: Any, alpha: Any) -> Any:
+    """Return √(α² sin²θ + cos²θ) = (1 + 2Λ) |cosθ|."""
+    return np.sqrt(alpha * alpha * ((1.0 - z) * (1.0 + z)) + z * z)
+
+
+@kernel
+def _distribution(hx: Any, hy: Any, hz: Any, alpha: Any) -> Any:
+    """Return D(h) [sr⁻¹] of a half vector of any length: normalising it would cost digits."""
+    across, up = hx * hx + hy * hy, hz * hz
+    ratio = (across + up) / (across / alpha + alpha * up)
+    return ratio * ratio / np.pi
+
+
+@kernel
+def _value(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, alpha: Any) -> Any:
+    """Return D G₂ / (4 cosθi cosθo), after Smith's roots and the cosines are multiplied out."""
+    above = (iz > _HORIZON) & (oz > _HORIZON)
+    density = _distribution(ix + ox, iy + oy, select(above, iz + oz, 1.0), alpha)
+    below = 2.0 * (iz * _root(oz, alpha) + oz * _root(iz, alpha))
+    return select(above, density / select(above, below, 1.0), 0.0)
+
+
+@kernel
+def _density(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, alpha: Any) -> Any:
+    """Return G₁ D / (4 cosθo)."""
+    above = (iz > _HORIZON) & (oz > _HORIZON)
+    density = _distribution(ix + ox, iy + oy, select(above, iz + oz, 1.0), alpha)
+    return select(above, 0.5 * density / select(above, oz + _root(oz, alpha), 1.0), 0.0)
+
+
+@kernel
+def _facet(u0: Any, u1: Any, ox: Any, oy: Any, oz: Any, alpha: Any) -> Any:
+    """Return a visible normal, not of unit length.
+
+    Source: Dupuy & Benyoub (2023), Sampling Visible GGX Normals with Spherical Caps, Computer Graphics
+    Forum 42(8), doi:10.1111/cgf.14867; the cap's radius and height are written without cancellation.
+    """
+    x, y, z = alpha * ox, alpha * oy, abs(oz)
+    length = np.sqrt(x * x + y * y + z * z)
+    x, y, z = x / length, y / length, z / length
+    up, down = (1.0 - u0) * (1.0 + z), u0 * (1.0 + z)  # above −z, and below 1
     radius = np.sqrt(down * (up + (x * x + y * y) / (1.0 + z)))
     sine, cosine = sincos(u1)
-    a, b = radius * cosine + x, radius * sine + y
-    along = length * (x * a + y * b + z * up)
-    inverse = 1.0 / (alpha * alpha * (a * a + b * b) + up * up)
-    return 2.0 * along * up * inverse - cos_o, along * along * inverse
+    return alpha * (radius * cosine + x), alpha * (radius * sine + y), up
 
 
 @kernel
-def _shadowing(cos_i: Any, alpha: Any, cos_o: Any, root_o: Any) -> Any:
-    """Return G₂ / G₁, the cosines multiplied out."""
-    root_i = np.sqrt(alpha * alpha + (1.0 - alpha * alpha) * (cos_i * cos_i))
-    above = (cos_i > _HORIZON) & (cos_o > _HORIZON)
-    share = cos_i * (cos_o + root_o) / select(above, cos_i * root_o + cos_o * root_i, 1.0)
-    return select(above, share, 0.0)
+def _sample(u0: Any, u1: Any, ox: Any, oy: Any, oz: Any, alpha: Any) -> Any:
+    """Return wi about a visible normal, and G₂ / G₁, the cosines multiplied out."""
+    nx, ny, nz = _facet(u0, u1, ox, oy, oz, alpha)
+    twice = 2.0 * (ox * nx + oy * ny + oz * nz) / (nx * nx + ny * ny + nz * nz)
+    wz = twice * nz - oz
+    above = (wz > _HORIZON) & (oz > _HORIZON)
+    root_o = _root(oz, alpha)
+    share = wz * (oz + root_o) / select(above, wz * root_o + oz * _root(wz, alpha), 1.0)
+    return twice * nx - ox, twice * ny - oy, wz, select(above, share, 0.0)
 
 
 @kernel
-def _share(u0: Any, u1: Any, alpha: Any, x: Any, y: Any, z: Any, length: Any, cos_o: Any, root_o: Any) -> Any:
-    """Return the weight of facets that reflect everything."""
-    cos_i, _ = _facet(u0, u1, alpha, x, y, z, length, cos_o)
-    return _shadowing(cos_i, alpha, cos_o, root_o)
+def _mirrors(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, eta: Any, k: Any) -> Any:
+    """Return F at the angle between a direction and h, whose cosine is |wi + wo| / 2."""
+    x, y, z = ix + ox, iy + oy, iz + oz
+    cosine = 0.5 * np.sqrt(x * x + y * y + z * z)
+    return conductor_kernel(select(cosine < 1.0, cosine, 1.0), eta, k)
 
 
 @kernel
-def _metal_share(
-    u0: Any,
-    u1: Any,
-    eta: Any,
-    k: Any,
-    alpha: Any,
-    x: Any,
-    y: Any,
-    z: Any,
-    length: Any,
-    cos_o: Any,
-    root_o: Any,
-) -> Any:
-    """Return the weight of facets with an index."""
-    cos_i, square = _facet(u0, u1, alpha, x, y, z, length, cos_o)
-    cos_d = np.sqrt(select(square < 1.0, square, 1.0))
-    return conductor_kernel(cos_d, eta, k) * _shadowing(cos_i, alpha, cos_o, root_o)
+def _metal_value(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, alpha: Any, eta: Any, k: Any) -> Any:
+    return _mirrors(ix, iy, iz, ox, oy, oz, eta, k) * _value(ix, iy, iz, ox, oy, oz, alpha)
+
+
+@kernel
+def _metal_density(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, alpha: Any, eta: Any, k: Any) -> Any:
+    return _density(ix, iy, iz, ox, oy, oz, alpha)
+
+
+@kernel
+def _metal_sample(u0: Any, u1: Any, ox: Any, oy: Any, oz: Any, alpha: Any, eta: Any, k: Any) -> Any:
+    wx, wy, wz, share = _sample(u0, u1, ox, oy, oz, alpha)
+    return wx, wy, wz, _mirrors(wx, wy, wz, ox, oy, oz, eta, k) * share
 
 
 @dataclass(frozen=True, kw_only=True)
-class GGX(BSDF):
+class GGX(ScalarBSDF):
     """The GGX conductor, f = F D G₂ / (4 cosθi cosθo), with Smith's height-correlated G₂.
 
     Parameters
@@ -149,77 +184,12 @@ class GGX(BSDF):
             values |= {eta: self.eta, k: self.k}
         return Twin(reflectance * density * shadowing / (4 * wi[2] * wo[2]), values)
 
-    def evaluate(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
-        """Return f(wi, wo) [sr⁻¹]; 0 unless both directions are above the horizon."""
-        above = np.minimum(wi[..., 2], wo[..., 2]) > _HORIZON
-        density, length2 = self._density(wi, wo, above)
-        root_i, root_o = self._root(wi), self._root(wo)
-        # G₂ / (4 cosθi cosθo), after Smith's roots and cosines are multiplied out.
-        inverse = 2.0 * (wi[..., 2] * root_o + wo[..., 2] * root_i)
-        value = self._reflectance(length2) * density / np.where(above, inverse, 1.0)
-        return np.where(above, value, 0.0)
-
-    def pdf(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
-        """Return the density [sr⁻¹] of ``sample``, G₁ D / (4 cosθo); 0 below the horizon."""
-        above = np.minimum(wi[..., 2], wo[..., 2]) > _HORIZON
-        density, _ = self._density(wi, wo, above)
-        return np.where(above, 0.5 * density / np.where(above, wo[..., 2] + self._root(wo), 1.0), 0.0)
-
-    def sample(self, u: FloatArray, wo: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return ``wi`` about visible normals, and ``weight = F G₂ / G₁``.
-
-        Source: Dupuy & Benyoub (2023), Sampling Visible GGX Normals with Spherical Caps, Computer Graphics
-        Forum 42(8), doi:10.1111/cgf.14867; the cap's radius and height are written without cancellation.
-        """
-        x, y, z = self.alpha * wo[..., 0], self.alpha * wo[..., 1], np.abs(wo[..., 2])
-        length = np.sqrt(x * x + y * y + z * z)
-        x, y, z = x / length, y / length, z / length
-        up, down = (1.0 - u[..., 0]) * (1.0 + z), u[..., 0] * (1.0 + z)  # above −z, and below 1
-        radius = np.sqrt(down * (up + (x * x + y * y) / (1.0 + z)))
-        phi = 2.0 * np.pi * u[..., 1]
-        normal = np.stack(
-            (self.alpha * (radius * np.cos(phi) + x), self.alpha * (radius * np.sin(phi) + y), up), axis=-1
-        )
-        wi = (2.0 * dot(wo, normal) / dot(normal, normal))[..., None] * normal - wo
-        return wi, self._weight(wi, wo)
-
-    def weight_kernel(self, wo: FloatArray) -> tuple[Kernel, tuple[float, ...]]:
-        """Return F G₂ / G₁ of ``sample`` as a kernel."""
-        x, y, z = self.alpha * float(wo[0]), self.alpha * float(wo[1]), float(wo[2])
-        length = float(np.sqrt(x * x + y * y + z * z))
-        view = (self.alpha, x / length, y / length, z / length, length, z, float(self._root(wo)))
+    def kernels(self) -> Kernels:
+        """Return the kernels, without a Fresnel factor where there is no index."""
         if self.eta is None or self.k is None:
-            return _share, view
-        return _metal_share, (*fresnel.clip_index(self.eta, self.k), *view)
-
-    def _weight(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
-        """Return F G₂ / G₁, the cosines multiplied out."""
-        cos_i, cos_o = wi[..., 2], wo[..., 2]
-        above = np.minimum(cos_i, cos_o) > _HORIZON
-        root_i, root_o = self._root(wi), self._root(wo)
-        half = wi + wo
-        share = cos_i * (cos_o + root_o) / np.where(above, cos_i * root_o + cos_o * root_i, 1.0)
-        return np.where(above, self._reflectance(dot(half, half)) * share, 0.0)
-
-    def _density(self, wi: FloatArray, wo: FloatArray, above: Any) -> tuple[FloatArray, FloatArray]:
-        """Return D(h) [sr⁻¹] and |wi + wo|², without normalising h: its length would cost digits."""
-        half = wi + wo
-        across = half[..., 0] ** 2 + half[..., 1] ** 2
-        up = half[..., 2] ** 2
-        ratio = (across + up) / np.where(above, across / self.alpha + self.alpha * up, 1.0)
-        return ratio * ratio / np.pi, across + up
-
-    def _root(self, w: FloatArray) -> FloatArray:
-        """Return √(α² sin²θ + cos²θ) = (1 + 2Λ) |cosθ|."""
-        sine2 = w[..., 0] ** 2 + w[..., 1] ** 2
-        root: FloatArray = np.sqrt(self.alpha**2 * sine2 + w[..., 2] ** 2)
-        return root
-
-    def _reflectance(self, length2: FloatArray) -> Any:
-        """Return F at the angle between a direction and h, whose cosine is |wi + wo| / 2."""
-        if self.eta is None or self.k is None:
-            return 1.0
-        return fresnel.conductor(np.minimum(0.5 * np.sqrt(length2), 1.0), self.eta, self.k)
+            return Kernels(_value, _density, _sample, (self.alpha,))
+        index = fresnel.clip_index(self.eta, self.k)
+        return Kernels(_metal_value, _metal_density, _metal_sample, (self.alpha, *index))
 
     @property
     def smooth(self) -> bool:

@@ -7,15 +7,17 @@ is the perfect diffuser, lossless and white.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from radiokit.contracts.bsdf import BSDF, Claims, FloatArray
+from radiokit.contracts.bsdf import Claims
 from radiokit.contracts.parameters import parameter
+from radiokit.contracts.scalar import Kernels, ScalarBSDF
 from radiokit.facts.source import Source
-from radiokit.measure.kernels import Kernel, kernel
+from radiokit.measure.kernels import kernel, select
 from radiokit.measure.twin import Twin
-from radiokit.measure.warps import CosineHemisphere
+from radiokit.measure.vectors import from_disk
 
 __all__ = ["Lambert"]
 
@@ -27,16 +29,25 @@ SOURCE = Source(
     equation="the perfectly diffuse surface, f = ρ/π",
 )
 
-_WARP = CosineHemisphere()
+
+@kernel
+def _value(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, reflectance: Any) -> Any:
+    return select((iz > 0.0) & (oz > 0.0), reflectance / np.pi, 0.0)
 
 
 @kernel
-def _weight(u0: float, u1: float, reflectance: float) -> float:
-    return reflectance
+def _density(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, reflectance: Any) -> Any:
+    return select((iz > 0.0) & (oz > 0.0), iz / np.pi, 0.0)
+
+
+@kernel
+def _sample(u0: Any, u1: Any, ox: Any, oy: Any, oz: Any, reflectance: Any) -> Any:
+    x, y, z = from_disk(u0, u1)
+    return x, y, z, select((z > 0.0) & (oz > 0.0), reflectance, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Lambert(BSDF):
+class Lambert(ScalarBSDF):
     """The diffuse surface, f = ρ/π.
 
     Parameters
@@ -62,26 +73,14 @@ class Lambert(BSDF):
         rho = sympy.Symbol("rho", positive=True)
         return Twin(rho / sympy.pi, {rho: self.reflectance})
 
-    def evaluate(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
-        """Return f(wi, wo) [sr⁻¹]."""
-        return np.where(np.minimum(wi[..., 2], wo[..., 2]) > 0.0, self.reflectance / np.pi, 0.0)
-
-    def pdf(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
-        """Return the density [sr⁻¹] of ``sample``, cosθ/π."""
-        return np.where(wo[..., 2] > 0.0, np.maximum(wi[..., 2], 0.0) / np.pi, 0.0)
-
-    def sample(self, u: FloatArray, wo: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return ``wi``, cosine-distributed, and ``weight = ρ``."""
-        return _WARP.sample(u), np.where(wo[..., 2] > 0.0, self.reflectance, 0.0)
+    def kernels(self) -> Kernels:
+        """Return the kernels: a constant value, and samples whose projections fill the unit disk evenly."""
+        return Kernels(_value, _density, _sample, (self.reflectance,))
 
     @property
     def smooth(self) -> bool:
         """True."""
         return True
-
-    def weight_kernel(self, wo: FloatArray) -> tuple[Kernel, tuple[float, ...]]:
-        """Return ρ as a kernel."""
-        return _weight, (self.reflectance,)
 
     def lobe_width(self) -> float:
         """Return 1, the width of a diffuse lobe."""

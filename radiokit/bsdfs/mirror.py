@@ -7,13 +7,16 @@ included, and ``delta_lobes`` holds the reflectance. Light from it is summed, no
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from radiokit.contracts.bsdf import BSDF, Claims, DeltaLobe, FloatArray
+from radiokit.contracts.bsdf import Claims, DeltaLobe, FloatArray
 from radiokit.contracts.parameters import parameter
+from radiokit.contracts.scalar import Kernels, ScalarBSDF
 from radiokit.facts.directions import reflect
 from radiokit.facts.source import Source
+from radiokit.measure.kernels import kernel, select
 from radiokit.measure.twin import Twin
 
 __all__ = ["Mirror"]
@@ -27,8 +30,18 @@ SOURCE = Source(
 )
 
 
+@kernel
+def _nothing(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, reflectance: Any) -> Any:
+    return 0.0 * iz * oz
+
+
+@kernel
+def _sample(u0: Any, u1: Any, ox: Any, oy: Any, oz: Any, reflectance: Any) -> Any:
+    return -ox, -oy, oz, select(oz > 0.0, reflectance, 0.0)
+
+
 @dataclass(frozen=True, kw_only=True)
-class Mirror(BSDF):
+class Mirror(ScalarBSDF):
     """The perfectly specular surface.
 
     Parameters
@@ -63,18 +76,9 @@ class Mirror(BSDF):
         delta = sympy.DiracDelta
         return Twin(rho * delta(x_i + x_o) * delta(y_i + y_o), {rho: self.reflectance})
 
-    def evaluate(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
-        """Return 0 [sr⁻¹]: there is nothing beside the delta lobe."""
-        return np.zeros(np.broadcast_shapes(wi.shape, wo.shape)[:-1])
-
-    def pdf(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
-        """Return 0 [sr⁻¹]: ``sample`` returns the delta lobe."""
-        return self.evaluate(wi, wo)
-
-    def sample(self, u: FloatArray, wo: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the mirror direction whatever ``u`` is, and ``weight = ρ``."""
-        (lobe,) = self.delta_lobes(wo)
-        return lobe.wi, lobe.weight
+    def kernels(self) -> Kernels:
+        """Return the kernels: 0 beside the delta lobe, and samples that are the mirror direction."""
+        return Kernels(_nothing, _nothing, _sample, (self.reflectance,))
 
     def delta_lobes(self, wo: FloatArray) -> tuple[DeltaLobe, ...]:
         """Return the one lobe: the mirror direction of ``wo`` (N, 3), with weight ρ."""

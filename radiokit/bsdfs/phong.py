@@ -12,13 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from radiokit.contracts.bsdf import BSDF, Claims, FloatArray
+from radiokit.contracts.bsdf import Claims
 from radiokit.contracts.parameters import parameter
-from radiokit.facts.directions import dot, frame, reflect, to_world
+from radiokit.contracts.scalar import Kernels, ScalarBSDF
 from radiokit.facts.source import Source
-from radiokit.measure.elementary import expm1, log, sincos
-from radiokit.measure.kernels import Kernel, kernel, select
+from radiokit.measure.elementary import exp, expm1, log, log1p, sincos
+from radiokit.measure.kernels import kernel, select
 from radiokit.measure.twin import Twin
+from radiokit.measure.vectors import from_frame
 
 __all__ = ["Phong"]
 
@@ -31,17 +32,46 @@ SOURCE = Source(
 
 
 @kernel
-def _weight(u0: float, u1: float, scale: float, power: float, x: float, y: float, z: float) -> Any:
-    """Return the weight of ``sample``; −x, −y, z are the z components of the mirror direction's frame."""
-    loss = -expm1(log(1.0 - u0) * power)  # 1 − cosα; the difference is exact
+def _lobe(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, exponent: Any) -> Any:
+    """Return cosⁿα, or 0 below the horizon.
+
+    Near the mirror direction r, cosα has too few digits for a large n; |r − wi|² = 2(1 − cosα) has them.
+    """
+    x, y, z = ix + ox, iy + oy, iz - oz
+    depth = 0.5 * (x * x + y * y + z * z)
+    cosine = iz * oz - ix * ox - iy * oy
+    lit = (cosine > 0.0) & (iz > 0.0) & (oz > 0.0)
+    near = depth < 0.5
+    log_cosine = select(near, log1p(-select(near, depth, 0.0)), log(select(lit, cosine, 1.0)))
+    return select(lit, exp(exponent * log_cosine), 0.0)
+
+
+@kernel
+def _value(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, exponent: Any, reflectance: Any) -> Any:
+    return reflectance * (exponent + 2.0) / (2.0 * np.pi) * _lobe(ix, iy, iz, ox, oy, oz, exponent)
+
+
+@kernel
+def _density(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, exponent: Any, reflectance: Any) -> Any:
+    return (exponent + 1.0) / (2.0 * np.pi) * _lobe(ix, iy, iz, ox, oy, oz, exponent)
+
+
+@kernel
+def _sample(u0: Any, u1: Any, ox: Any, oy: Any, oz: Any, exponent: Any, reflectance: Any) -> Any:
+    """Return wi about the mirror direction, and ρ (n + 2)/(n + 1) cosθi.
+
+    Source: Lafortune & Willems (1994), section 3, the sampling of the specular lobe.
+    """
+    loss = -expm1(log(1.0 - u0) / (exponent + 1.0))  # 1 − cosα; the difference is exact
     radius = np.sqrt(loss * (2.0 - loss))
     sine, cosine = sincos(u1)
-    cos_i = (1.0 - loss) * z + radius * (cosine * x + sine * y)
-    return scale * select(cos_i > 0.0, cos_i, 0.0)
+    wx, wy, wz = from_frame(radius * cosine, radius * sine, 1.0 - loss, -ox, -oy, oz)
+    scale = reflectance * (exponent + 2.0) / (exponent + 1.0)
+    return wx, wy, wz, select((wz > 0.0) & (oz > 0.0), scale * wz, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Phong(BSDF):
+class Phong(ScalarBSDF):
     """The modified Phong lobe, f = ρ (n + 2)/(2π) cosⁿα, with α the angle from the mirror direction.
 
     Parameters
@@ -77,45 +107,9 @@ class Phong(BSDF):
         lobe = sympy.Piecewise((cosine**n, cosine > 0), (0, True))
         return Twin(rho * (n + 2) / (2 * sympy.pi) * lobe, {rho: self.reflectance, n: self.exponent})
 
-    def evaluate(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
-        """Return f(wi, wo) [sr⁻¹]."""
-        return self.reflectance * (self.exponent + 2.0) / (2.0 * np.pi) * self._lobe(wi, wo)
-
-    def pdf(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
-        """Return the density [sr⁻¹] of ``sample``, (n + 1)/(2π) cosⁿα; 0 below the horizon."""
-        return (self.exponent + 1.0) / (2.0 * np.pi) * self._lobe(wi, wo)
-
-    def sample(self, u: FloatArray, wo: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return ``wi`` about the mirror direction, and ``weight = ρ (n + 2)/(n + 1) cosθi``.
-
-        Source: Lafortune & Willems (1994), section 3, the sampling of the specular lobe.
-        """
-        log_cosine = np.log1p(-u[..., 0]) / (self.exponent + 1.0)
-        cosine, sine = np.exp(log_cosine), np.sqrt(-np.expm1(2.0 * log_cosine))
-        phi = 2.0 * np.pi * u[..., 1]
-        local = np.stack((sine * np.cos(phi), sine * np.sin(phi), cosine), axis=-1)
-        wi = to_world(frame(reflect(wo)), local)
-        scale = self.reflectance * (self.exponent + 2.0) / (self.exponent + 1.0)
-        return wi, np.where(wo[..., 2] > 0.0, scale * np.maximum(wi[..., 2], 0.0), 0.0)
-
-    def weight_kernel(self, wo: FloatArray) -> tuple[Kernel, tuple[float, ...]]:
-        """Return ρ (n + 2)/(n + 1) cosθi as a kernel."""
-        scale = self.reflectance * (self.exponent + 2.0) / (self.exponent + 1.0)
-        return _weight, (scale, 1.0 / (self.exponent + 1.0), float(wo[0]), float(wo[1]), float(wo[2]))
-
-    def _lobe(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
-        """Return cosⁿα, or 0 below the horizon.
-
-        Near the mirror direction r, cosα has too few digits for a large n; |r − wi|² = 2(1 − cosα) has them.
-        """
-        mirror = reflect(wo)
-        offset, cosine = wi - mirror, dot(wi, mirror)
-        depth = 0.5 * dot(offset, offset)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            log_cosine = np.where(depth < 0.5, np.log1p(-depth), np.log(cosine))
-            lobe = np.exp(self.exponent * log_cosine)
-        lit = (cosine > 0.0) & (np.minimum(wi[..., 2], wo[..., 2]) > 0.0)
-        return np.where(lit, lobe, 0.0)
+    def kernels(self) -> Kernels:
+        """Return the kernels."""
+        return Kernels(_value, _density, _sample, (self.exponent, self.reflectance))
 
     @property
     def smooth(self) -> bool:

@@ -16,7 +16,6 @@ from radiokit.facts.directions import check_directions
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.measure import lowdiscrepancy
-from radiokit.measure.montecarlo import mean
 from radiokit.measure.quadrature import hemisphere
 
 __all__ = ["Side", "albedo", "delta_albedo", "directional_albedo", "integrand"]
@@ -164,18 +163,21 @@ def delta_albedo(model: BSDF, wo: FloatArray) -> Any:
 
 
 def _monte_carlo(model: BSDF, wo: FloatArray, samples: int, seed: int) -> Estimate:
-    method = "Monte Carlo, BSDF-sampled"
-    found = model.weight_kernel(wo)
-    if found is not None:
-        from radiokit.measure.fused import fused_mean
+    from radiokit.measure.fused import fused_mean
 
-        kernel, constants = found
-        return fused_mean(kernel, constants, samples=samples, rng=seed, method=method)
+    def weight(*u: FloatArray) -> Any:
+        points = np.stack(u, axis=-1)
+        return model.sample(points, np.broadcast_to(wo, (len(points), 3)))[1]
 
-    def draw(generator: np.random.Generator, n: int) -> Any:
-        return model.sample(generator.random((n, 2)), np.broadcast_to(wo, (n, 3)))[1]
-
-    return mean(draw, samples=samples, rng=seed, method=method)
+    function, constants = model.weight_kernel(wo) or (weight, ())
+    return fused_mean(
+        function,
+        constants,
+        dimensions=model.dimensions,
+        samples=samples,
+        rng=seed,
+        method="Monte Carlo, BSDF-sampled",
+    )
 
 
 def _low_discrepancy(model: BSDF, wo: FloatArray, samples: int, seed: int) -> Estimate:
@@ -183,5 +185,5 @@ def _low_discrepancy(model: BSDF, wo: FloatArray, samples: int, seed: int) -> Es
         return model.sample(u, np.broadcast_to(wo, (len(u), 3)))[1]
 
     return lowdiscrepancy.mean(
-        draw, dimensions=2, samples=samples, rng=seed, method="shifted lattices, BSDF-sampled"
+        draw, dimensions=model.dimensions, samples=samples, rng=seed, method="shifted lattices, BSDF-sampled"
     )

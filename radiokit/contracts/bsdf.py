@@ -106,8 +106,8 @@ class BSDF(ABC):
     def weight_kernel(self, wo: FloatArray) -> tuple[Kernel, tuple[float, ...]] | None:
         """Return ``sample``'s weight for ``wo`` (3,) above the horizon as a kernel, or None if there is none.
 
-        ``kernel(u0, u1, *constants)``, with the constants that come with it, is the weight that ``sample``
-        gives for the point (u0, u1). Monte Carlo compiles it into its loop.
+        ``kernel(u0, u1, *constants)``, with ``u2`` too for three dimensions, is the weight that ``sample``
+        gives for that point. Monte Carlo compiles it into its loop.
         """
         return None
 

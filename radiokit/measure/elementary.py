@@ -9,7 +9,7 @@ import numpy as np
 
 from radiokit.measure.kernels import kernel, select
 
-__all__ = ["expm1", "key_of", "log", "sincos", "stream", "uniform"]
+__all__ = ["exp", "expm1", "key_of", "log", "log1p", "sincos", "stream", "uniform"]
 
 # Random numbers: a hash of seed, dimension and index, so that any of them is had without those before it.
 
@@ -87,6 +87,7 @@ def sincos(turn: Any) -> Any:
 
 # Minimax fits: log in t = s² for |s| ≤ 3 − √8, of relative error 9e-20; expm1 for |r| ≤ log(2)/2, of 3e-19.
 _LN2, _PER_LN2 = 0.6931471805599453, 1.4426950408889634
+_LN2_HIGH, _LN2_LOW = 0.6931471804855391, 7.440617110012397e-11  # the first has 33 bits: exact products
 _ROOT_HALF, _EXPONENT = np.int64(0x3FE6A09E667F3BCD), np.int64(52)
 _BIAS = np.int64(1023)
 _L0, _L1, _L2 = 0.3333333333333333, 0.2000000000000044, 0.14285714285401807
@@ -99,19 +100,65 @@ _E9, _E10 = 2.5105217004720745e-08, 2.0914686968086876e-09
 
 
 @kernel
+def _log_of(exponent: Any, m: Any) -> Any:
+    """Return the logarithm of (1 + m) 2^exponent."""
+    s = m / (2.0 + m)
+    t = s * s
+    tail = t * (_L0 + t * (_L1 + t * (_L2 + t * (_L3 + t * (_L4 + t * (_L5 + t * (_L6 + t * _L7)))))))
+    return exponent * _LN2 + 2.0 * (s + s * tail)
+
+
+@kernel
+def _parts(x: Any) -> Any:
+    """Return the exponent of the power of two that leaves a number near 1, and that number less 1."""
+    bits = np.float64(x).view(np.int64)
+    exponent = (bits - _ROOT_HALF) >> _EXPONENT
+    return exponent, np.int64(bits - (exponent << _EXPONENT)).view(np.float64) - 1.0
+
+
+@kernel
 def log(x: Any) -> Any:
     """Return log ``x`` for a normal number above 0, to 3 units in the last place.
 
     >>> float(log(0.5)) == float(np.log(0.5))
     True
     """
-    bits = np.float64(x).view(np.int64)
-    exponent = (bits - _ROOT_HALF) >> _EXPONENT  # of the power of two that leaves a number near 1
-    m = np.int64(bits - (exponent << _EXPONENT)).view(np.float64) - 1.0
-    s = m / (2.0 + m)
-    t = s * s
-    tail = t * (_L0 + t * (_L1 + t * (_L2 + t * (_L3 + t * (_L4 + t * (_L5 + t * (_L6 + t * _L7)))))))
-    return exponent * _LN2 + 2.0 * (s + s * tail)
+    exponent, m = _parts(x)
+    return _log_of(exponent, m)
+
+
+@kernel
+def log1p(x: Any) -> Any:
+    """Return log(1 + ``x``) for ``x`` above -1, to 3 units in the last place.
+
+    >>> float(log1p(1e-20)), float(log1p(-0.5)) == float(np.log(0.5))
+    (1e-20, True)
+    """
+    exponent, m = _parts(1.0 + x)
+    near = (x > -0.29) & (x < 0.41)
+    return _log_of(select(near, 0.0, exponent * 1.0), select(near, x, m))
+
+
+@kernel
+def _powers(x: Any) -> Any:
+    """Return 2ⁿ, and e^r − 1 for the rest r of ``x`` = n log 2 + r."""
+    n = np.rint(x * _PER_LN2)
+    r = (x - n * _LN2_HIGH) - n * _LN2_LOW
+    power = np.int64((np.int64(n) + _BIAS) << _EXPONENT).view(np.float64)
+    tail = _E5 + r * (_E6 + r * (_E7 + r * (_E8 + r * (_E9 + r * _E10))))
+    return power, r + r * r * (_E0 + r * (_E1 + r * (_E2 + r * (_E3 + r * (_E4 + r * tail)))))
+
+
+@kernel
+def exp(x: Any) -> Any:
+    """Return e to the ``x``, to 2 + |x| units in the last place: 0 below -700, and e⁷⁰⁰ above 700.
+
+    >>> round(float(exp(1.0)), 14), float(exp(-1e9))
+    (2.71828182845905, 0.0)
+    """
+    within = select(x > -700.0, select(x < 700.0, x, 700.0), -700.0)
+    power, p = _powers(within)
+    return select(x < -700.0, 0.0, power + power * p)
 
 
 @kernel
@@ -121,9 +168,5 @@ def expm1(x: Any) -> Any:
     >>> float(expm1(1e-20)), float(expm1(-700.0))
     (1e-20, -1.0)
     """
-    n = np.rint(x * _PER_LN2)
-    r = x - n * _LN2
-    power = np.int64((np.int64(n) + _BIAS) << _EXPONENT).view(np.float64)
-    tail = _E5 + r * (_E6 + r * (_E7 + r * (_E8 + r * (_E9 + r * _E10))))
-    p = r + r * r * (_E0 + r * (_E1 + r * (_E2 + r * (_E3 + r * (_E4 + r * tail)))))
+    power, p = _powers(x)
     return power * p + (power - 1.0)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import sys
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import dataclass
@@ -15,18 +13,27 @@ import numpy as np
 from radiokit.facts.errors import NonFiniteError, ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.elementary import key_of, stream, uniform
-from radiokit.measure.kernels import Kernel, compile_with, numba_runs
+from radiokit.measure.kernels import Kernel, bind, compile_with, numba_runs
 from radiokit.measure.montecarlo import BlockDraw, Moments, mean
+from radiokit.measure.passes import processors
 
-__all__ = ["FusedDraw", "fused_mean", "points", "processors"]
+__all__ = ["FusedDraw", "fused_mean", "points"]
 
 BLOCK = 1 << 20
 """Samples in a block, which is what a thread takes at a time: a few milliseconds of work."""
 
 _PIECE = 1 << 13  # of a block where NumPy does the work: its temporaries stay in the cache
 _PILOT = 64  # samples whose mean the deviations are taken from
-_ZERO, _ONE = np.uint64(0), np.uint64(1)
-_sample: Any = None  # stands for the kernel in the driver below
+_ZERO, _ONE, _TWO = np.uint64(0), np.uint64(1), np.uint64(2)
+_sample: Any = None  # stands for the kernel in the functions below
+
+
+def _planar(start0: Any, start1: Any, start2: Any, index: Any, *parameters: Any) -> Any:
+    return _sample(uniform(start0, index), uniform(start1, index), *parameters)
+
+
+def _spatial(start0: Any, start1: Any, start2: Any, index: Any, *parameters: Any) -> Any:
+    return _sample(uniform(start0, index), uniform(start1, index), uniform(start2, index), *parameters)
 
 
 def _accumulate(key: Any, first: Any, count: Any, parameters: Any) -> Any:
@@ -35,19 +42,19 @@ def _accumulate(key: Any, first: Any, count: Any, parameters: Any) -> Any:
     The largest is found among the bits, as an integer: a maximum of floats would not be vectorised, since
     NaN has no place in their order.
     """
-    start0, start1 = stream(key, _ZERO), stream(key, _ONE)
-    origin = _sample(uniform(start0, first), uniform(start1, first), *parameters)
+    start0, start1, start2 = stream(key, _ZERO), stream(key, _ONE), stream(key, _TWO)
+    origin = _sample(start0, start1, start2, first, *parameters)
     total = 0.0
     pilot = min(count, _PILOT)
     for j in range(pilot):
         index = first + np.uint64(j)
-        total += _sample(uniform(start0, index), uniform(start1, index), *parameters) - origin
+        total += _sample(start0, start1, start2, index, *parameters) - origin
     pivot = origin + total / pilot
     total = squares = 0.0
     largest = np.int64(0)
     for j in range(count):
         index = first + np.uint64(j)
-        deviation = _sample(uniform(start0, index), uniform(start1, index), *parameters) - pivot
+        deviation = _sample(start0, start1, start2, index, *parameters) - pivot
         total += deviation
         squares += deviation * deviation
         largest = max(largest, np.float64(abs(deviation)).view(np.int64))
@@ -55,15 +62,16 @@ def _accumulate(key: Any, first: Any, count: Any, parameters: Any) -> Any:
 
 
 @lru_cache(maxsize=64)
-def _compiled(function: Kernel, width: int) -> Any:
+def _compiled(function: Kernel, width: int, dimensions: int) -> Any:
     def types(numba: Any) -> tuple[Any, ...]:
         return numba.uint64, numba.uint64, numba.int64, numba.types.UniTuple(numba.float64, width)
 
-    return compile_with(_accumulate, types, _sample=function)  # type: ignore[arg-type]
+    drawn = bind(_planar if dimensions == 2 else _spatial, _sample=function)
+    return compile_with(_accumulate, types, _sample=drawn)  # type: ignore[arg-type]
 
 
-def points(key: np.uint64, first: int, count: int) -> tuple[Any, Any]:
-    """Return the uniform numbers of samples ``first``, ``first + 1``, ...: two arrays (count,).
+def points(key: np.uint64, first: int, count: int, dimensions: int = 2) -> tuple[Any, ...]:
+    """Return the uniform numbers of samples ``first``, ``first + 1``, ...: arrays (count,), one a dimension.
 
     >>> u0, u1 = points(key_of(3), 10, 5)
     >>> bool(np.all(u0[2:] == points(key_of(3), 12, 3)[0]))
@@ -71,7 +79,7 @@ def points(key: np.uint64, first: int, count: int) -> tuple[Any, Any]:
     """
     index = np.arange(first, first + count, dtype=np.uint64)
     with np.errstate(over="ignore"):
-        return uniform(stream(key, _ZERO), index), uniform(stream(key, _ONE), index)
+        return tuple(uniform(stream(key, np.uint64(d)), index) for d in range(dimensions))
 
 
 @dataclass(frozen=True)
@@ -81,18 +89,21 @@ class FusedDraw(BlockDraw):
     Parameters
     ----------
     function : Kernel or callable
-        A kernel is compiled; any other function is called with arrays u0 and u1 (n,), and returns (n,).
-        Both see the same points for the same seed.
+        A kernel is compiled; any other function is called with arrays u0 and u1 (n,), and returns (n,) or,
+        for K wavelengths, (n, K). Both see the same points for the same seed.
     parameters : tuple of float
+    dimensions : int
+        2, or 3 for a function of ``u0, u1, u2``.
     """
 
     function: Any
     parameters: tuple[float, ...] = ()
+    dimensions: int = 2
 
     def prepare(self) -> None:
         """Compile the kernel, once: threads then share it."""
         if isinstance(self.function, Kernel) and numba_runs():
-            _compiled(self.function, len(self.parameters))
+            _compiled(self.function, len(self.parameters), self.dimensions)
 
     def moments(self, seed: int, first: int, count: int) -> Moments:
         """Return the moments of samples ``first`` to ``first + count - 1``.
@@ -107,7 +118,7 @@ class FusedDraw(BlockDraw):
             for part in found[1:]:
                 whole = whole.merge(part)
             return whole
-        run = _compiled(self.function, len(self.parameters))
+        run = _compiled(self.function, len(self.parameters), self.dimensions)
         pivot, total, squares, bits = run(key, np.uint64(first), count, self.parameters)
         if not np.isfinite(total):
             for at in range(first, first + count, _PIECE):
@@ -121,13 +132,14 @@ class FusedDraw(BlockDraw):
     def _plain(self, key: np.uint64, first: int, count: int) -> Moments:
         """Return the moments by NumPy, or say which value is none."""
         with np.errstate(all="ignore") if isinstance(self.function, Kernel) else nullcontext():
-            values = np.asarray(self.function(*points(key, first, count), *self.parameters), dtype=np.float64)
-        if values.shape not in ((), (count,)):
+            u = points(key, first, count, self.dimensions)
+            values = np.asarray(self.function(*u, *self.parameters), dtype=np.float64)
+        if values.ndim > 2 or values.shape[:1] not in ((), (count,)):
             raise ParameterError("function", values.shape, f"one that returns shape ({count},)")
-        values = np.broadcast_to(values, (count,))
-        bad = np.flatnonzero(~np.isfinite(values))
+        values = np.broadcast_to(values, (count,)) if values.ndim == 0 else values
+        bad = np.argwhere(~np.isfinite(values))
         if len(bad):
-            value, sample = float(values[bad[0]]), first + int(bad[0])
+            value, sample = float(values[tuple(bad[0])]), first + int(bad[0][0])
             raise NonFiniteError(
                 f"{self._name} returned {value} as sample {sample}", value=value, sample=sample
             )
@@ -138,28 +150,17 @@ class FusedDraw(BlockDraw):
         return str(getattr(self.function, "__qualname__", type(self.function).__qualname__))
 
 
-def processors() -> int:
-    """Return how many processors this process may use.
-
-    >>> processors() >= 1
-    True
-    """
-    if sys.platform == "emscripten":  # a browser, where no thread can be started
-        return 1
-    affinity = getattr(os, "sched_getaffinity", None)
-    return len(affinity(0)) if affinity else os.cpu_count() or 1
-
-
 def fused_mean(
     function: Any,
     parameters: tuple[float, ...] = (),
     *,
+    dimensions: int = 2,
     samples: int,
     rng: int | np.random.Generator | None = None,
     workers: int | None = None,
     method: str = "Monte Carlo",
 ) -> Estimate:
-    """Return the mean of ``function(u0, u1, *parameters)`` over the unit square, by Monte Carlo.
+    """Return the mean of ``function(u0, u1, *parameters)`` over the unit square (or cube), by Monte Carlo.
 
     Sample i of a seed is the same whoever draws it, and the blocks' moments are merged in their order: the
     answer is the same to the last bit for any number of threads. Memory does not grow with ``samples``.
@@ -169,6 +170,8 @@ def fused_mean(
     function : Kernel or callable
         Of two numbers in [0, 1) and the parameters; a callable that is no kernel is given arrays.
     parameters : tuple of float
+    dimensions : int
+        Of the points: 2 or 3.
     samples : int
         At least 2.
     rng : int, numpy.random.Generator or None
@@ -194,7 +197,9 @@ def fused_mean(
         count = processors() if isinstance(function, Kernel) else 1
     if type(count) is not int or count < 1:
         raise ParameterError("workers", workers, "an integer, at least 1, or None")
-    draw = FusedDraw(function, tuple(map(float, parameters)))
+    if dimensions not in (2, 3):
+        raise ParameterError("dimensions", dimensions, "2 or 3")
+    draw = FusedDraw(function, tuple(map(float, parameters)), dimensions)
     draw.prepare()
     if count == 1 or type(samples) is not int or samples <= BLOCK:
         return mean(draw, samples=samples, rng=rng, block=BLOCK, method=method)

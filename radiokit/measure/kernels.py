@@ -2,9 +2,10 @@
 
 A kernel is written once, for numbers: arithmetic, ``np.sqrt`` and its like, other kernels, and ``select`` in
 place of ``if``. Numba makes machine code of it, without branches, so that the loop round it is vectorised;
-without Numba the same lines run on arrays. Sums are put in any order, so that no error term of an addition
-survives: a kernel cannot compensate. Numba is imported when the first kernel is compiled. Setting
-``RADIOKIT_NO_NUMBA=1`` in the environment does without it.
+without Numba the same lines run on arrays. In the loops of ``fused`` sums are put in any order, so that no
+error term of an addition survives: a kernel cannot compensate. In those of ``passes`` arithmetic is strict.
+Numba is imported when the first kernel is compiled. Setting ``RADIOKIT_NO_NUMBA=1`` in the environment does
+without it.
 """
 
 from __future__ import annotations
@@ -20,15 +21,13 @@ from typing import Any, overload
 
 import numpy as np
 
-from radiokit.facts.errors import ParameterError
-
-__all__ = ["Kernel", "compile_with", "kernel", "numba_runs", "select"]
+__all__ = ["Kernel", "bind", "compile_with", "kernel", "last", "numba_runs", "select"]
 
 _FLAGS: dict[str, Any] = {
     "error_model": "numpy",  # a division by 0 gives inf: no branch for an exception
-    "fastmath": {"reassoc", "nsz", "contract", "arcp"},  # sums in lanes; NaN and inf stay what they are
     "nogil": True,
 }
+_FAST = {"reassoc", "nsz", "contract", "arcp"}  # sums in lanes; NaN and inf stay what they are
 _lock = threading.RLock()
 
 
@@ -58,43 +57,6 @@ class Kernel:
         """Run the plain form, with numbers or arrays."""
         return self.plain(*arguments)
 
-    def map(self, *columns: Any, constants: tuple[float, ...] = (), out: Any = None) -> Any:
-        """Return the values for arrays (n,), one a varying argument: a pass of machine code where Numba runs.
-
-        Several passes, some of them NumPy functions, make a pipeline; in blocks of some thousand numbers it
-        stays in the cache. Nothing warns: what ``select`` drops may be NaN.
-
-        Parameters
-        ----------
-        *columns : array_like, shape (n,)
-            The first arguments.
-        constants : tuple of float
-            The other arguments, the same for all.
-        out : ndarray of float64, optional
-            Where to: shape (n,) for a kernel that returns a number, (m, n) for one that returns m of them.
-
-        Raises
-        ------
-        ParameterError
-            When the columns differ in length.
-
-        >>> scaled = kernel(lambda a, b, scale: scale * a * b)
-        >>> scaled.map([1.0, 2.0], [3.0, 4.0], constants=(0.5,)).tolist()
-        [1.5, 4.0]
-        """
-        arrays = [np.ascontiguousarray(column, dtype=np.float64) for column in columns]
-        shapes = [array.shape for array in arrays]
-        if not arrays or set(shapes) != {(arrays[0].size,)}:
-            raise ParameterError("columns", shapes, "arrays of shape (n,)")
-        out = np.empty(arrays[0].shape) if out is None else out
-        with np.errstate(all="ignore"):
-            if numba_runs():
-                run = _mapped(self, len(arrays), len(constants), 0 if out.ndim == 1 else len(out))
-                run(*arrays, tuple(map(float, constants)), out)
-            else:
-                out[...] = self.plain(*arrays, *constants)
-        return out
-
     def __repr__(self) -> str:
         return f"kernel({self.__module__}.{self.__qualname__})"
 
@@ -104,14 +66,17 @@ class Kernel:
     @cached_property
     def fingerprint(self) -> str:
         """A digest of all that its machine code depends on: its own code and that of the kernels it calls."""
-        return _fingerprint(self.function, {})
+        return _fingerprint(self.function, {}, set())
 
     @cached_property
     def inlined(self) -> Any:
         """The Numba function that other compiled functions take in whole."""
-        import numba
+        return _inlined(self, _FAST)
 
-        return numba.njit(forceinline=True, **_FLAGS)(_linked(self.function, {}))
+    @cached_property
+    def strict(self) -> Any:
+        """The same in strict IEEE arithmetic, which gives what the plain form gives."""
+        return _inlined(self, set())
 
 
 @overload
@@ -160,7 +125,11 @@ def numba_runs() -> bool:
 
 
 def compile_with(
-    driver: FunctionType, argument_types: Callable[[Any], tuple[Any, ...]], **bound: Kernel
+    driver: FunctionType,
+    argument_types: Callable[[Any], tuple[Any, ...]],
+    *,
+    strict: bool = False,
+    **bound: Kernel,
 ) -> Any:
     """Compile a driver, a function with loops, in which global names stand for the kernels ``bound`` to them.
 
@@ -172,45 +141,30 @@ def compile_with(
     driver : function
     argument_types : callable
         Returns the types of the driver's arguments, given the module ``numba``.
+    strict : bool
+        Keep the order of every sum, and round every product: no error differs from NumPy's.
     **bound : Kernel
     """
     import numba
 
+    math: set[str] = set() if strict else _FAST
     with _lock:
-        linked = _linked(driver, bound)
-        linked.__qualname__ = f"{driver.__qualname__}-{_fingerprint(driver, bound)[:16]}"
+        linked = _linked(driver, bound, math)
+        linked.__qualname__ = f"{driver.__qualname__}-{_fingerprint(driver, bound, math)[:16]}"
         types = argument_types(numba)
         try:
-            found = numba.njit(cache=True, **_FLAGS)(linked)
+            found = numba.njit(cache=True, fastmath=math, **_FLAGS)(linked)
             found.compile(types)
         except (RuntimeError, OSError):  # nowhere to keep the cache
-            found = numba.njit(**_FLAGS)(linked)
+            found = numba.njit(fastmath=math, **_FLAGS)(linked)
             found.compile(types)
         return found
 
 
-@lru_cache(maxsize=64)
-def _mapped(function: Kernel, columns: int, constants: int, outputs: int) -> Any:
-    """Compile the loop over ``columns`` arrays; its text is the only part that depends on their number."""
-    names = [f"c{j}" for j in range(columns)]
-    values = ", ".join(f"out[{j}, i]" for j in range(outputs)) or "out[i]"
-    text = (
-        f"def loop({', '.join(names)}, constants, out):\n"
-        f"    for i in range(len(c0)):\n"
-        f"        {values} = function({', '.join(f'{name}[i]' for name in names)}, *constants)\n"
-    )
-    space: dict[str, Any] = {"__name__": __name__}
-    exec(compile(text, __file__, "exec"), space)
+def _inlined(function: Kernel, math: set[str]) -> Any:
+    import numba
 
-    def types(numba: Any) -> tuple[Any, ...]:
-        number = numba.float64
-        return (
-            *[number[::1]] * columns,
-            numba.types.UniTuple(number, constants),
-            number[:, ::1] if outputs else number[::1],
-        )
-
-    return compile_with(space["loop"], types, function=function)
+    return numba.njit(forceinline=True, fastmath=math, **_FLAGS)(_linked(function.function, {}, math))
 
 
 def _named(function: Callable[..., Any], bound: dict[str, Kernel]) -> dict[str, Any]:
@@ -225,11 +179,15 @@ def _named(function: Callable[..., Any], bound: dict[str, Kernel]) -> dict[str, 
     return values | {name: cell.cell_contents for name, cell in cells}
 
 
-def _linked(function: Callable[..., Any], bound: dict[str, Kernel]) -> FunctionType:
+def _linked(function: Callable[..., Any], bound: dict[str, Kernel], math: set[str]) -> FunctionType:
     """Return the same code, which finds compiled functions where the original finds kernels."""
     assert isinstance(function, FunctionType)
     values = _named(function, bound)
-    link = {name: value.inlined for name, value in values.items() if isinstance(value, Kernel)}
+    link = {
+        name: value.inlined if math else value.strict
+        for name, value in values.items()
+        if isinstance(value, Kernel)
+    }
     code = function.__code__
     enclosed = set(code.co_freevars) & set(link)
     if enclosed:
@@ -243,9 +201,9 @@ def _linked(function: Callable[..., Any], bound: dict[str, Kernel]) -> FunctionT
     return made
 
 
-def _fingerprint(function: Callable[..., Any], bound: dict[str, Kernel]) -> str:
+def _fingerprint(function: Callable[..., Any], bound: dict[str, Kernel], math: set[str]) -> str:
     assert isinstance(function, FunctionType)
-    parts: list[Any] = [sorted(_FLAGS["fastmath"]), *_code_parts(function.__code__), function.__defaults__]
+    parts: list[Any] = [sorted(math), *_code_parts(function.__code__), function.__defaults__]
     for name, value in _named(function, bound).items():
         if isinstance(value, Kernel):
             parts.append((name, value.fingerprint))
@@ -257,6 +215,35 @@ def _fingerprint(function: Callable[..., Any], bound: dict[str, Kernel]) -> str:
 def _code_parts(code: CodeType) -> tuple[Any, ...]:
     inner = [_code_parts(part) if isinstance(part, CodeType) else repr(part) for part in code.co_consts]
     return (code.co_code, inner, code.co_names, code.co_varnames, code.co_freevars)
+
+
+def bind(function: Callable[..., Any], **bound: Kernel) -> Kernel:
+    """Return a kernel of ``function``, in which global names stand for the kernels ``bound`` to them."""
+    assert isinstance(function, FunctionType)
+    space = function.__globals__ | bound
+    made = FunctionType(function.__code__, space, function.__name__, function.__defaults__)
+    made.__qualname__ = f"{function.__qualname__}({', '.join(k.__qualname__ for k in bound.values())})"
+    made.__module__ = function.__module__
+    return Kernel(made)
+
+
+def _last(*arguments: Any) -> Any:
+    return _whole(*arguments)[-1]
+
+
+_whole: Any = None  # stands for a kernel above
+
+
+@lru_cache(maxsize=256)
+def last(function: Kernel) -> Kernel:
+    """Return the kernel that gives the last of the numbers that ``function`` returns.
+
+    What only the others need is not computed by the machine code.
+
+    >>> last(kernel(lambda a, b: (b, a + b)))(1.0, 2.0)
+    3.0
+    """
+    return bind(_last, _whole=function)
 
 
 @kernel(plain=np.where)
