@@ -6,6 +6,7 @@ A new model needs one file in ``radiokit/bsdfs`` and one row in ``ROWS``; every 
 from __future__ import annotations
 
 import ast
+import dataclasses
 import inspect
 import pickle
 from collections.abc import Iterable
@@ -19,8 +20,9 @@ from radiokit.bsdfs import ggx
 from radiokit.bsdfs.ggx import GGX
 from radiokit.bsdfs.lambert import Lambert
 from radiokit.checks.judge import check
-from radiokit.contracts.albedo import directional_albedo
+from radiokit.contracts.albedo import albedo, directional_albedo
 from radiokit.contracts.bsdf import bsdf, list_bsdfs
+from radiokit.contracts.parameters import parameters_of
 from radiokit.contracts.scalar import ScalarBSDF
 from radiokit.facts.directions import half_vector, reflect, spherical_to_cartesian, unit
 from radiokit.facts.errors import ParameterError
@@ -55,9 +57,9 @@ def ggx_albedo(theta_deg: float) -> float:
     return float(1 - mu * np.log((1 + mu) / mu))
 
 
-def out_of_range(name: str, value: Any, interval: str) -> tuple[dict[str, Any], str]:
-    message = f"{name} = {value!r} is not allowed: it must be a number in {interval}"
-    return {name: value}, message
+def out_of_range(name: str, value: Any, interval: str, spectral: bool = False) -> tuple[dict[str, Any], str]:
+    more = ", or a sequence of them, one a wavelength" if spectral else ""
+    return {name: value}, f"{name} = {value!r} is not allowed: it must be a number in {interval}{more}"
 
 
 ROWS = (
@@ -66,15 +68,15 @@ ROWS = (
         ordinary=({}, {"reflectance": 0.5}),
         hard=({"reflectance": 0.0},),
         wrong=(
-            out_of_range("reflectance", 1.5, "[0, 1]"),
-            out_of_range("reflectance", float("nan"), "[0, 1]"),
+            out_of_range("reflectance", 1.5, "[0, 1]", spectral=True),
+            out_of_range("reflectance", float("nan"), "[0, 1]", spectral=True),
         ),
         albedos=(({"reflectance": 0.25}, 0.0, 0.25), ({"reflectance": 0.25}, 89.9, 0.25)),
     ),
     Row(
         "mirror",
         ordinary=({}, {"reflectance": 0.3}),
-        wrong=(out_of_range("reflectance", -0.1, "[0, 1]"),),
+        wrong=(out_of_range("reflectance", -0.1, "[0, 1]", spectral=True),),
         albedos=(({"reflectance": 0.3}, 60.0, 0.3),),
     ),
     Row(
@@ -84,7 +86,7 @@ ROWS = (
         wrong=(
             out_of_range("exponent", 0.5, "[1, 1e6]"),
             out_of_range("exponent", "steep", "[1, 1e6]"),
-            out_of_range("reflectance", None, "[0, 1]"),
+            out_of_range("reflectance", None, "[0, 1]", spectral=True),
         ),
         # Exactly ρ at normal incidence, for every exponent.
         albedos=tuple(({"exponent": n}, 0.0, 1.0) for n in (1.0, 10.0, 1e3, 1e6)),
@@ -108,8 +110,8 @@ ROWS = (
         wrong=(
             out_of_range("alpha", 0, "[1e-4, 1]"),
             out_of_range("alpha", -1, "[1e-4, 1]"),
-            out_of_range("eta", 0.0, "(0, inf)"),
-            out_of_range("k", -1.0, "[0, inf)"),
+            out_of_range("eta", 0.0, "(0, inf)", spectral=True),
+            out_of_range("k", -1.0, "[0, inf)", spectral=True),
             ({"eta": 1.5}, "k = None is not allowed: it must be given, as eta is: an index has both parts"),
             ({"k": 1.5}, "eta = None is not allowed: it must be given, as k is: an index has both parts"),
         ),
@@ -293,6 +295,51 @@ def test_machine_code_gives_the_bits_that_numpy_gives(row, rng):
     machine = through_kernels(f, (wi, wo), u, compiled=True)
     for one, other in zip(plain, machine, strict=True):
         np.testing.assert_array_equal(one, other)
+
+
+@models
+def test_a_spectrum_is_its_wavelengths(row, rng):
+    """Every parameter that may be a spectrum is one, of three wavelengths and of one."""
+    declared = parameters_of(type(bsdf(row.name)))
+    names = [name for name in declared if declared[name].spectral]
+    given = (p for p in row.ordinary if all(getattr(bsdf(row.name, **p), name) is not None for name in names))
+    single = bsdf(row.name, **next(given))
+    for factors in ([1.0, 0.9, 0.5], [0.75]) if names else ():
+        spectra = {name: getattr(single, name) * np.array(factors) for name in names}
+        f = dataclasses.replace(single, **spectra)
+        assert hash(f) == hash(dataclasses.replace(f))
+        wi, wo = hard_pairs(single, rng)
+        u = rng.random((len(wo), f.dimensions))
+        found = f.evaluate(wi, wo), f.pdf(wi, wo), *f.sample(u, wo)
+        for k in range(len(factors)):
+            one = f.wavelength(k)
+            assert [getattr(one, name) for name in names] == [getattr(f, name)[k] for name in names]
+            np.testing.assert_array_equal(found[0][:, k], one.evaluate(wi, wo))
+            np.testing.assert_array_equal(found[1], one.pdf(wi, wo))
+            np.testing.assert_array_equal(found[2], one.sample(u, wo)[0])
+            np.testing.assert_array_equal(found[3][:, k], one.sample(u, wo)[1])
+        sky = spherical_to_cartesian(1.0, 0.3)
+        total = directional_albedo(f, sky, rtol=1e-6)
+        parts = [directional_albedo(f.wavelength(k), sky, rtol=1e-6) for k in range(len(factors))]
+        assert np.shape(total.value) == (len(factors),)
+        for k, part in enumerate(parts):
+            assert abs(total.value[k] - part.value) <= total.error[k] + part.error
+        sampled = albedo(f, sky, method="mc", samples=2000, rng=rng)
+        assert np.shape(sampled.value) == (len(factors),)
+        assert f.symbolic().expression == single.symbolic().expression
+
+
+def test_a_spectrum_out_of_range_or_of_another_length_is_named():
+    with pytest.raises(ParameterError, match=r"^reflectance = 1\.5 is not allowed: .* one a wavelength$"):
+        bsdf("lambert", reflectance=[0.5, 1.5])
+    with pytest.raises(
+        ParameterError, match=r"^eta = \(1\.5, 1\.6\) is not allowed: .* as many numbers as k has, 1"
+    ):
+        bsdf("ggx", eta=[1.5, 1.6], k=[1.0])
+    with pytest.raises(ParameterError, match=r"^alpha = \[0\.1, 0\.2\] is not .* must be a number in"):
+        bsdf("ggx", alpha=[0.1, 0.2])
+    with pytest.raises(ParameterError, match="a twin's values are for one wavelength"):
+        bsdf("lambert", reflectance=[0.5, 0.6]).symbolic().evaluate((0, 0, 1), (0, 0, 1))
 
 
 @models

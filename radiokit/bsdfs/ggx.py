@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from radiokit.contracts.bsdf import Claims
-from radiokit.contracts.parameters import parameter
+from radiokit.contracts.parameters import Spectrum, parameter
 from radiokit.contracts.scalar import Kernels, ScalarBSDF
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.source import Source
@@ -128,9 +128,9 @@ class GGX(ScalarBSDF):
     ----------
     alpha : float
         Width α of the slope distribution [1], not squared, in [1e-4, 1].
-    eta : float, optional
+    eta : float or sequence of float, optional
         Real part of the relative index η + ik [1], above 0; with ``k``.
-    k : float, optional
+    k : float or sequence of float, optional
         Extinction [1], at least 0; with ``eta``. Without both, the facets reflect everything (F = 1).
 
     Raises
@@ -148,8 +148,10 @@ class GGX(ScalarBSDF):
     EXAMPLES = ({}, {"alpha": 1.0}, {"alpha": 0.01}, {"alpha": 0.001}, {"alpha": 0.2, "eta": 0.2, "k": 3.9})
 
     alpha: float = parameter("[1e-4, 1]", "1", "width of the slope distribution", default=0.3)
-    eta: float | None = parameter("(0, inf)", "1", "real part of the relative index", default=None)
-    k: float | None = parameter("[0, inf)", "1", "extinction", default=None)
+    eta: Spectrum | None = parameter(
+        "(0, inf)", "1", "real part of the relative index", spectral=True, default=None
+    )
+    k: Spectrum | None = parameter("[0, inf)", "1", "extinction", spectral=True, default=None)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -193,8 +195,10 @@ class GGX(ScalarBSDF):
 
     @property
     def smooth(self) -> bool:
-        """True."""
-        return True
+        """Whether F is: it has a kink at the critical angle where the facets reflect totally."""
+        if self.eta is None or self.k is None:
+            return True
+        return bool(np.all((np.asarray(self.eta) >= 1.0) | (np.asarray(self.k) >= 0.1)))
 
     def lobe_width(self) -> float:
         """Return α."""

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from radiokit.contracts.bsdf import Claims
-from radiokit.contracts.parameters import parameter
+from radiokit.contracts.parameters import Spectrum, parameter
 from radiokit.contracts.scalar import Kernels, ScalarBSDF
 from radiokit.facts.source import Source
 from radiokit.measure.kernels import kernel, select
@@ -52,7 +52,7 @@ class Lambert(ScalarBSDF):
 
     Parameters
     ----------
-    reflectance : float
+    reflectance : float or sequence of float
         ρ, the albedo for every direction [1], in [0, 1].
 
     >>> import numpy as np
@@ -64,7 +64,7 @@ class Lambert(ScalarBSDF):
     SOURCE = SOURCE
     EXAMPLES = ({}, {"reflectance": 0.5}, {"reflectance": 0.0})
 
-    reflectance: float = parameter("[0, 1]", "1", "albedo", default=1.0)
+    reflectance: Spectrum = parameter("[0, 1]", "1", "albedo", spectral=True, default=1.0)
 
     def symbolic(self) -> Twin:
         """Return the symbolic twin, ρ/π."""
@@ -86,11 +86,13 @@ class Lambert(ScalarBSDF):
         """Return 1, the width of a diffuse lobe."""
         return 1.0
 
-    def diffuse_reflectance(self) -> float:
-        """Return ρ."""
-        return self.reflectance
+    def diffuse_reflectance(self) -> Any:
+        """Return ρ, of shape () or (K,)."""
+        return np.asarray(self.reflectance) if isinstance(self.reflectance, tuple) else self.reflectance
 
     @property
     def claims(self) -> Claims:
         """Reciprocal and conserving; lossless when ρ = 1."""
-        return Claims(reciprocity="yes", conserves=True, lossless=self.reflectance == 1.0)
+        return Claims(
+            reciprocity="yes", conserves=True, lossless=bool(np.all(np.equal(self.reflectance, 1.0)))
+        )

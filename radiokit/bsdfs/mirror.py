@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from radiokit.contracts.bsdf import Claims, DeltaLobe, FloatArray
-from radiokit.contracts.parameters import parameter
+from radiokit.contracts.parameters import Spectrum, parameter
 from radiokit.contracts.scalar import Kernels, ScalarBSDF
 from radiokit.facts.directions import reflect
 from radiokit.facts.source import Source
@@ -31,7 +31,12 @@ SOURCE = Source(
 
 
 @kernel
-def _nothing(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, reflectance: Any) -> Any:
+def _value(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, reflectance: Any) -> Any:
+    return 0.0 * iz * oz * reflectance
+
+
+@kernel
+def _density(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, reflectance: Any) -> Any:
     return 0.0 * iz * oz
 
 
@@ -46,7 +51,7 @@ class Mirror(ScalarBSDF):
 
     Parameters
     ----------
-    reflectance : float
+    reflectance : float or sequence of float
         ρ, the share of the flux that is reflected [1], in [0, 1], at any angle.
 
     >>> import numpy as np
@@ -59,7 +64,7 @@ class Mirror(ScalarBSDF):
     SOURCE = SOURCE
     EXAMPLES = ({}, {"reflectance": 0.5})
 
-    reflectance: float = parameter("[0, 1]", "1", "share of the flux", default=1.0)
+    reflectance: Spectrum = parameter("[0, 1]", "1", "share of the flux", spectral=True, default=1.0)
 
     def symbolic(self) -> Twin:
         """Return the symbolic twin, ρ δ(x_i + x_o) δ(y_i + y_o).
@@ -78,14 +83,15 @@ class Mirror(ScalarBSDF):
 
     def kernels(self) -> Kernels:
         """Return the kernels: 0 beside the delta lobe, and samples that are the mirror direction."""
-        return Kernels(_nothing, _nothing, _sample, (self.reflectance,))
+        return Kernels(_value, _density, _sample, (self.reflectance,))
 
     def delta_lobes(self, wo: FloatArray) -> tuple[DeltaLobe, ...]:
         """Return the one lobe: the mirror direction of ``wo`` (N, 3), with weight ρ."""
-        return (DeltaLobe(reflect(wo), np.where(wo[..., 2] > 0.0, self.reflectance, 0.0)),)
+        weight = np.multiply.outer(wo[..., 2] > 0.0, np.asarray(self.reflectance))
+        return (DeltaLobe(reflect(wo), weight),)
 
     @property
     def claims(self) -> Claims:
         """Reciprocal, conserving, nothing but a delta; lossless when ρ = 1."""
-        lossless = self.reflectance == 1.0
+        lossless = bool(np.all(np.equal(self.reflectance, 1.0)))
         return Claims(reciprocity="yes", conserves=True, lossless=lossless, delta=True)

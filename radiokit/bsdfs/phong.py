@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from radiokit.contracts.bsdf import Claims
-from radiokit.contracts.parameters import parameter
+from radiokit.contracts.parameters import Spectrum, parameter
 from radiokit.contracts.scalar import Kernels, ScalarBSDF
 from radiokit.facts.source import Source
 from radiokit.measure.elementary import exp, expm1, log, log1p, sincos
@@ -78,7 +78,7 @@ class Phong(ScalarBSDF):
     ----------
     exponent : float
         n [1], in [1, 1e6]. The lobe's half-width at half its height is about √(1.39/n) rad.
-    reflectance : float
+    reflectance : float or sequence of float
         ρ, the albedo at normal incidence [1], in [0, 1].
 
     >>> import numpy as np
@@ -92,7 +92,7 @@ class Phong(ScalarBSDF):
     EXAMPLES = ({}, {"exponent": 1.0}, {"exponent": 1000.0, "reflectance": 0.5})
 
     exponent: float = parameter("[1, 1e6]", "1", "exponent of the lobe's cosine", default=10.0)
-    reflectance: float = parameter("[0, 1]", "1", "albedo at normal incidence", default=1.0)
+    reflectance: Spectrum = parameter("[0, 1]", "1", "albedo at normal incidence", spectral=True, default=1.0)
 
     def symbolic(self) -> Twin:
         """Return the symbolic twin, with cosα from the mirror direction's dot product over the lengths."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.contracts.parameters import check_parameters
+from radiokit.contracts.parameters import at_wavelength, check_parameters
 from radiokit.contracts.registry import Registry
 from radiokit.facts.directions import check_directions
 from radiokit.facts.source import Source
@@ -150,6 +150,15 @@ class BSDF(ABC):
     @abstractmethod
     def symbolic(self) -> Twin:
         """Return the symbolic twin: f(wi, wo) as a SymPy expression written from the source."""
+
+    def wavelength(self, index: int) -> BSDF:
+        """Return the model at one of the K wavelengths of its parameters; itself where it has none.
+
+        >>> bsdf("lambert", reflectance=[0.2, 0.5]).wavelength(1)
+        Lambert(reflectance=0.5)
+        """
+        found: BSDF = at_wavelength(self, index)
+        return found
 
     def parameters(self) -> dict[str, Any]:
         """Return the parameters by name."""

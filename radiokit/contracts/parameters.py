@@ -7,18 +7,33 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from radiokit.facts.errors import ParameterError, RadiokitError, suggestion
 
-__all__ = ["Parameter", "build", "check_parameters", "parameter", "parameters_of"]
+__all__ = [
+    "Parameter",
+    "Spectrum",
+    "at_wavelength",
+    "build",
+    "check_parameters",
+    "parameter",
+    "parameters_of",
+    "spectrum_length",
+]
+
+Spectrum = float | tuple[float, ...]
+"""A number, or one for each wavelength."""
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """What a model says of one parameter: its interval, unit and meaning."""
+    """What a model says of one parameter: its interval, unit, meaning, and whether it may be a spectrum."""
 
     interval: str
     unit: str
     meaning: str
+    spectral: bool = False
 
     def contains(self, value: float) -> bool:
         """Return whether ``value`` lies in the interval.
@@ -32,12 +47,14 @@ class Parameter:
         return above and below
 
 
-def parameter(interval: str, unit: str, meaning: str, **field: Any) -> Any:
+def parameter(interval: str, unit: str, meaning: str, *, spectral: bool = False, **field: Any) -> Any:
     """Declare a dataclass field with its interval, such as ``"(0, 1]"`` or ``"[0, inf)"``.
 
-    ``default=None`` makes it optional: then ``None`` is allowed too.
+    ``default=None`` makes it optional: then ``None`` is allowed too. With ``spectral`` it may also be a
+    sequence of K numbers, one a wavelength, which becomes a tuple.
     """
-    return dataclasses.field(metadata={"parameter": Parameter(interval, unit, meaning)}, **field)
+    declared = Parameter(interval, unit, meaning, spectral)
+    return dataclasses.field(metadata={"parameter": declared}, **field)
 
 
 def parameters_of(cls: type) -> dict[str, Parameter]:
@@ -50,28 +67,60 @@ def parameters_of(cls: type) -> dict[str, Parameter]:
 
 
 def check_parameters(model: Any) -> None:
-    """Turn every declared parameter of a frozen dataclass into a float and check its range.
+    """Turn every declared parameter of a frozen dataclass into a float, or a tuple of them; check its range.
 
     Raises
     ------
     ParameterError
         Naming the parameter, its value and what is allowed.
     """
+    fields = {field.name: field for field in dataclasses.fields(model)}
+    lengths: dict[str, int] = {}
     for name, declared in parameters_of(type(model)).items():
         value = getattr(model, name)
-        allowed = f"a number in {declared.interval}"
-        if value is None:
-            fields = {field.name: field for field in dataclasses.fields(model)}
-            if fields[name].default is None:
-                continue
-            raise ParameterError(name, value, allowed)
-        try:
-            number = float(value)
-        except (TypeError, ValueError):
-            raise ParameterError(name, value, allowed) from None
+        if value is None and fields[name].default is None:
+            continue
+        checked = _checked(name, value, declared)
+        if isinstance(checked, tuple):
+            lengths[name] = len(checked)
+        object.__setattr__(model, name, checked)
+    if len(set(lengths.values())) > 1:
+        first, other = sorted(lengths, key=lengths.__getitem__)[:: len(lengths) - 1]
+        raise ParameterError(
+            other,
+            getattr(model, other),
+            f"as many numbers as {first} has, {lengths[first]}: one a wavelength",
+        )
+
+
+def spectrum_length(model: Any) -> int | None:
+    """Return the number of wavelengths of a model's parameters, or None when all are single numbers."""
+    names = parameters_of(type(model)) if dataclasses.is_dataclass(model) else ()
+    found = (getattr(model, name) for name in names)
+    return next((len(value) for value in found if isinstance(value, tuple)), None)
+
+
+def at_wavelength(model: Any, index: int) -> Any:
+    """Return the model with number ``index`` of every parameter that is a spectrum."""
+    values = {name: getattr(model, name) for name in parameters_of(type(model))}
+    chosen = {name: value[index] for name, value in values.items() if isinstance(value, tuple)}
+    return dataclasses.replace(model, **chosen) if chosen else model
+
+
+def _checked(name: str, value: Any, declared: Parameter) -> float | tuple[float, ...]:
+    allowed = f"a number in {declared.interval}"
+    if declared.spectral:
+        allowed += ", or a sequence of them, one a wavelength"
+    try:
+        numbers = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        raise ParameterError(name, value, allowed) from None
+    if value is None or numbers.ndim > declared.spectral or not numbers.size:
+        raise ParameterError(name, value, allowed)
+    for number in np.atleast_1d(numbers).tolist():
         if math.isnan(number) or not declared.contains(number):
-            raise ParameterError(name, value, allowed)
-        object.__setattr__(model, name, number)
+            raise ParameterError(name, value if numbers.ndim == 0 else number, allowed)
+    return float(numbers) if numbers.ndim == 0 else tuple(numbers.tolist())
 
 
 def build(kind: str, name: str, cls: type, values: dict[str, Any]) -> Any:

@@ -104,9 +104,9 @@ class Estimate:
             ratio = np.where(difference == 0, 0.0, difference / error)
         return float(np.max(ratio))
 
-    def scaled(self, factor: float) -> Estimate:
-        """Return this estimate times an exactly known factor."""
-        return replace(self, value=self.value * factor, error=self.error * abs(factor))
+    def scaled(self, factor: Any) -> Estimate:
+        """Return this estimate times an exactly known factor, or one for each wavelength."""
+        return replace(self, value=self.value * factor, error=self.error * np.abs(factor))
 
     def __add__(self, other: Estimate) -> Estimate:
         """Add two independent estimates; bounds add, standard errors add in quadrature.

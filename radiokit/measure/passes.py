@@ -74,11 +74,11 @@ def run(
     if not any(spectral):
         return _plain(function, found, constants, rows)
     found = [column[:, None] if column.ndim else column for column in found]
-    values = np.broadcast_arrays(*(np.asarray(c, dtype=np.float64) for c in constants))
-    if values[0].shape != (1,):
+    values = [np.asarray(value, dtype=np.float64) for value in constants]
+    if any(value.shape[-1:] not in ((), (1,)) for value in values):
         return _plain(function, found, values, rows)
     # Two wavelengths in place of one tell what depends on it from what does not.
-    two = _plain(function, found, [np.repeat(value, 2) for value in values], rows)
+    two = _plain(function, found, [np.repeat(v, 2) if v.ndim else v for v in values], rows)
     parts = [part[:, :1] if part.ndim == 2 else part for part in (two if isinstance(two, tuple) else (two,))]
     return tuple(parts) if isinstance(two, tuple) else parts[0]
 
@@ -100,7 +100,7 @@ def _plain(
 ) -> Any:
     """Run NumPy on a block of rows at a time."""
     outs: list[npt.NDArray[np.float64]] = []
-    several = False
+    spectral, several = any(np.ndim(value) for value in constants), False
     with np.errstate(all="ignore"):
         for first in range(0, max(rows, 1), _BLOCK):
             part = slice(first, min(first + _BLOCK, rows))
@@ -108,15 +108,15 @@ def _plain(
             several = isinstance(values, tuple)
             values = [np.asarray(value) for value in (values if several else (values,))]
             if not outs:
-                outs = [np.empty((rows, *_wavelengths(value))) for value in values]
+                outs = [np.empty((rows, *_wavelengths(value, spectral))) for value in values]
             for out, value in zip(outs, values, strict=True):
-                out[part] = value if out.ndim == 2 or value.ndim < 2 else value[:, 0]
+                out[part] = value[..., 0] if spectral and out.ndim == 1 and value.ndim else value
     return tuple(outs) if several else outs[0]
 
 
-def _wavelengths(value: npt.NDArray[np.float64]) -> tuple[int, ...]:
-    """Return the shape that a value has beside its rows; a column of shape (n, 1) has none."""
-    return () if value.ndim < 2 or value.shape[1] == 1 else value.shape[1:]
+def _wavelengths(value: npt.NDArray[np.float64], spectral: bool) -> tuple[int, ...]:
+    """Return the shape that a value has beside its rows: one that depends on no spectrum has none."""
+    return value.shape[-1:] if spectral and value.shape[-1:] != (1,) else ()
 
 
 def _machine(

@@ -49,7 +49,7 @@ class Twin:
     expression : sympy.Expr
         Dirac deltas may stand in it; evaluation counts them as 0, as ``BSDF.evaluate`` does.
     parameters : mapping of sympy.Symbol to float
-        The model's parameters and their values, taken as exact binary numbers.
+        The model's parameters and their values, taken as exact binary numbers; a spectrum only stands here.
     arguments : tuple of sympy.Symbol
         What the function depends on; ``DIRECTION_SYMBOLS`` (x_i, y_i, z_i, x_o, y_o, z_o) by default.
 
@@ -63,7 +63,7 @@ class Twin:
     """
 
     expression: sympy.Expr
-    parameters: Mapping[sympy.Symbol, float] = field(default_factory=dict)
+    parameters: Mapping[sympy.Symbol, float | tuple[float, ...]] = field(default_factory=dict)
     arguments: tuple[sympy.Symbol, ...] = field(default_factory=_direction_symbols)
 
     def __post_init__(self) -> None:
@@ -149,7 +149,12 @@ class Twin:
 
         if len(values) != len(self.arguments):
             raise ParameterError("values", values, f"{len(self.arguments)} numbers")
-        return [mpmath.mpf(float(value)) for value in (*values, *self.parameters.values())]
+        numbers = [*values]
+        for symbol, value in self.parameters.items():
+            if isinstance(value, tuple):
+                raise ParameterError(str(symbol), value, "one number: a twin's values are for one wavelength")
+            numbers.append(value)
+        return [mpmath.mpf(float(number)) for number in numbers]
 
     def _real(self, *numbers: mpmath.mpf) -> mpmath.mpf:
         """Evaluate at mpmath's present precision and drop the imaginary part, which must be 0."""
