@@ -21,7 +21,7 @@ from radiokit.measure import elementary
 from radiokit.measure.elementary import expm1, key_of, log, sincos, stream, uniform
 from radiokit.measure.fused import BLOCK, FusedDraw, fused_mean, points, processors
 from radiokit.measure.kernels import Kernel, kernel, numba_runs, select
-from radiokit.measure.montecarlo import Moments
+from radiokit.measure.moments import Moments
 from radiokit.measure.statistics import binomial_interval, chi_square, sidak, z_test
 from radiokit.physics.fresnel import clip_index, conductor, conductor_kernel
 

@@ -7,7 +7,7 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,8 @@ from radiokit.facts.errors import NonFiniteError, ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.elementary import key_of, stream, uniform
 from radiokit.measure.kernels import Kernel, compile_with, numba_runs
-from radiokit.measure.montecarlo import BlockDraw, Moments, mean
+from radiokit.measure.moments import Moments
+from radiokit.measure.montecarlo import BlockDraw, mean
 
 __all__ = ["FusedDraw", "fused_mean", "points", "processors"]
 
@@ -154,8 +155,10 @@ def fused_mean(
     function: Any,
     parameters: tuple[float, ...] = (),
     *,
-    samples: int,
+    samples: int | None,
     rng: int | np.random.Generator | None = None,
+    rtol: float | None = None,
+    seconds: float | None = None,
     workers: int | None = None,
     method: str = "Monte Carlo",
 ) -> Estimate:
@@ -169,10 +172,14 @@ def fused_mean(
     function : Kernel or callable
         Of two numbers in [0, 1) and the parameters; a callable that is no kernel is given arrays.
     parameters : tuple of float
-    samples : int
-        At least 2.
+    samples : int or None
+        At least 2; with ``rtol`` or ``seconds``, the most that are drawn. None with ``seconds``: as many as
+        there is time for.
     rng : int, numpy.random.Generator or None
         The seed, a generator to draw one from, or None for fresh entropy.
+    rtol, seconds : float, optional
+        When to stop early, as for ``montecarlo.mean``: at this standard error beside the mean, which is
+        looked at after 4096, 8192, ... samples, or after so much time [s], to within a block of 2²⁰ samples.
     workers : int, optional
         Threads; by default as many as there are processors, and one for a callable that is no kernel.
     method : str
@@ -196,7 +203,10 @@ def fused_mean(
         raise ParameterError("workers", workers, "an integer, at least 1, or None")
     draw = FusedDraw(function, tuple(map(float, parameters)))
     draw.prepare()
-    if count == 1 or type(samples) is not int or samples <= BLOCK:
-        return mean(draw, samples=samples, rng=rng, block=BLOCK, method=method)
+    run = partial(
+        mean, draw, samples=samples, rng=rng, block=BLOCK, rtol=rtol, seconds=seconds, method=method
+    )
+    if count == 1 or (samples is not None and (type(samples) is not int or samples <= BLOCK)):
+        return run()
     with ThreadPoolExecutor(count) as pool:
-        return mean(draw, samples=samples, rng=rng, block=BLOCK, method=method, executor=pool)
+        return run(executor=pool)
