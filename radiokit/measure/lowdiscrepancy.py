@@ -65,8 +65,9 @@ def mean(
         The seed, a generator to draw one from, or None for fresh entropy.
     rtol : float, optional
         Above 0. Stop when every error is within ``rtol`` of its mean's magnitude. This is looked at each
-        time the lattice has doubled, from 32 points in each replicate on; nothing stops while a single
-        replicate makes nearly all of the variance, or while every sample was 0.
+        time the lattice has doubled, from 32 points in each replicate on, and must hold twice in a row: an
+        error from few replicates is often small by luck, and stopping there would claim too little. Nothing
+        stops while a single replicate makes nearly all of the variance, or while every sample was 0.
     seconds : float, optional
         Above 0. Stop after the first chunk that ends later than this [s], and return the last lattice that
         is complete; the answer then depends on the machine's speed.
@@ -115,12 +116,14 @@ def mean(
     most = lattice_samples(wanted, replicates) // replicates
     count = min(_FIRST_LOOK, most)  # in each replicate
     found = run.extend(0, count)
-    while not run.late and count < most and not (rtol is not None and found.within(rtol, run.all_zero)):
+    before, within = False, rtol is not None and found.within(rtol, run.all_zero and count < most)
+    while not run.late and count < most and not (before and within):
         more = run.extend(count, 2 * count)
         if run.incomplete:
             break
-        found, count = more, 2 * count
-    reached = rtol is not None and found.within(rtol, run.all_zero and count < most)
+        found, count, before = more, 2 * count, within
+        within = rtol is not None and found.within(rtol, run.all_zero and count < most)
+    reached = within and (before or count == most)
     notes = []
     if count < most and not reached:
         due = "" if samples is None else f" of {replicates * most}"
