@@ -58,7 +58,7 @@ class Task:
         return (self.f.lobe_width() or 1.0) >= BROAD
 
 
-BROAD = 0.2
+BROAD = 0.15
 """Lobe widths, in slope, from which on the weight varies gently over the square of the random numbers."""
 
 
