@@ -16,17 +16,21 @@ from radiokit.faces.bench.diagram import peer_lines
 from radiokit.faces.bench.methods import METHODS, Method
 from radiokit.faces.bench.peers import all_peers
 from radiokit.faces.bench.peers.compiled import Compiled, build
-from radiokit.faces.bench.peers.mitsuba import Mitsuba
+from radiokit.faces.bench.peers.mitsuba import Mitsuba, MitsubaRender
 from radiokit.faces.bench.peers.peer import Peer
-from radiokit.faces.bench.rows import fit
+from radiokit.faces.bench.rows import row as row_of
 from radiokit.faces.bench.run import Bench, bench, measure, measure_peers
+from radiokit.faces.bench.slopes import DUE, fit
 from radiokit.faces.bench.tasks import ALPHAS, THETAS_DEG, converged, ggx_albedo, tasks
 from radiokit.faces.bench.timing import Timing, interleave
 from radiokit.faces.cli import main
 from radiokit.facts.errors import ParameterError, RadiokitError
 from radiokit.facts.estimate import Estimate
+from radiokit.measure.fused import processors
+from radiokit.measure.kernels import numba_runs
 from radiokit.measure.statistics import sidak, z_test
 
+PRESENT = [peer for peer in all_peers() if peer.absent() is None]
 LEVEL = 1e-6  # chance that a right thing is rejected in a test of this file
 
 
@@ -75,12 +79,24 @@ def test_the_quick_run_has_every_row_and_is_json(found):
     assert {row["method"] for row in data["rows"]} == {method.name for method in METHODS}
     assert len(data["rows"]) == 4 * sum(len(method.quick) for method in METHODS)
     assert {row["method"] for row in data["starts"]} == {"quadrature", "mc", "qmc"}
+    caches = {row["cache"] for row in data["starts"] if row["method"] == "mc"}
+    assert caches == ({"cold", "warm"} if numba_runs() else {""})
+    assert data["settings"]["throughput_samples"] > data["settings"]["samples"]
+    assert int(data["machine"]["threads"]) == processors()
     assert data["machine"]["numpy"] == np.__version__
     assert all(row["seconds"] > 0 and row["throughput"] > 0 for row in data["rows"])
     assert {ratio["peer"] for ratio in data["ratios"]} | set(data["absent"]) == {
         peer.name for peer in all_peers()
     }
     assert all(ratio["speed"] > 0 for ratio in data["ratios"])
+    sampling = [peer.name for peer in PRESENT if peer.rival == "mc"]
+    assert [row["method"] for row in data["throughput"]] == ["mc", *sampling]
+    by_name = {row["method"]: row for row in data["throughput"]}
+    for ratio in data["throughput_ratios"]:
+        ours, theirs = by_name["mc"], by_name[ratio["peer"]]
+        assert ours["evaluations"] == theirs["evaluations"] == data["settings"]["throughput_samples"]
+        assert ratio["speed"] == pytest.approx(ours["throughput"] / theirs["throughput"])
+        assert ratio["qmc_efficiency"] is None
 
 
 def test_what_radiokit_claims_is_so(found):
@@ -96,6 +112,14 @@ def test_a_fresh_start_costs_more_than_the_second_call(found):
     for start in found.starts:
         assert start.first_seconds > start.second_seconds > 0
         assert start.import_seconds > 0
+        assert start.numpy_seconds > 0
+        assert start.total_seconds > start.first_seconds
+
+
+@pytest.mark.skipif(not numba_runs(), reason="nothing is compiled")
+def test_an_empty_cache_costs_a_compilation(found):
+    cold, warm = (next(start for start in found.starts if start.cache == cache) for cache in ("cold", "warm"))
+    assert cold.first_seconds > warm.first_seconds
 
 
 def sized(*names, sizes):
@@ -133,6 +157,62 @@ def test_a_power_law_is_not_called_geometric():
     )
     (slope,) = fit(measure(task, [slow], repeats=3))
     assert (slope.law, slope.rate) == ("power", pytest.approx(-1.0))
+
+
+def series(method, kind, law, sizes=(2**10, 2**13, 2**16, 2**19)):
+    """Rows of one method whose errors follow a law of the evaluations, or of the nodes."""
+    task = next(task for task in tasks(quick=True) if task.name == "ggx-0.3-at-60deg")
+    timing = Timing((1.0,) * 3, ())
+    rows = []
+    for size in sizes:
+        error = 0.1 * law(size)
+        result = (
+            Estimate(task.exact + error, error, kind, int(size)) if kind else (task.exact + error, size**2)
+        )
+        rows.append(row_of(task.name, method, size, task.exact, Timing(timing.seconds, (result,)), timing))
+    return task, rows
+
+
+@pytest.mark.parametrize(
+    ("method", "kind", "law", "met"),
+    [
+        ("mc", "statistical", lambda n: n**-0.5, True),
+        ("mc", "statistical", lambda n: n**-0.25, False),
+        ("mc", "statistical", lambda n: n**-0.8, False),
+        ("qmc", "statistical", lambda n: n**-0.95, True),
+        ("qmc", "statistical", lambda n: n**-2.0, True),
+        ("qmc", "statistical", lambda n: n**-0.5, False),
+        ("slope rule", None, lambda n: 0.6**n, True),
+        ("slope rule", None, lambda n: n**-2.0, False),
+        ("slope rule", None, lambda n: 1.1**n, False),
+    ],
+)
+def test_a_planted_wrong_slope_is_rejected(method, kind, law, met):
+    task, rows = series(method, kind, law, (8, 12, 16, 24) if kind is None else (2**10, 2**13, 2**16, 2**19))
+    (slope,) = fit(rows, broad={task.name})
+    assert slope.met is met
+    assert slope.due == DUE[method]
+    if method == "slope rule":
+        assert slope.digits == pytest.approx(-np.log10(law(24) / law(8)) / 16, rel=0.2)
+    else:
+        (elsewhere,) = fit(rows)
+        assert (elsewhere.due, elsewhere.met) == (None, None)
+
+
+def test_narrow_lobes_owe_no_law_of_sampling():
+    assert {task.name for task in tasks(quick=True) if not task.broad} == {"ggx-0.05-at-89deg"}
+
+
+def test_the_noise_of_a_slope_is_its_spread(rng):
+    """Errors that are root mean squares of 7 normal numbers, at four sizes."""
+    rates, noise = [], 0.0
+    for _ in range(300):
+        jitter = iter(np.sqrt(np.mean(rng.standard_normal((4, 7)) ** 2, axis=1)))
+        _, rows = series("mc", "statistical", lambda n, jitter=jitter: n**-0.5 * next(jitter))
+        (slope,) = fit(rows, repeats=7)
+        rates.append(slope.rate)
+        noise = slope.noise
+    assert np.std(rates) == pytest.approx(noise, rel=0.25)
 
 
 def test_calls_take_turns():
@@ -173,8 +253,6 @@ def test_planted_claims_that_are_too_small_are_seen(seed):
 
 # The peers
 
-PRESENT = [peer for peer in all_peers() if peer.absent() is None]
-
 
 @pytest.mark.parametrize("peer", PRESENT, ids=lambda peer: peer.name)
 @pytest.mark.parametrize(("alpha", "theta"), [(0.3, 60.0), (1.0, 0.0), (0.05, 60.0)])
@@ -213,6 +291,7 @@ def test_what_is_absent_says_why_and_what_helps(monkeypatch, tmp_path):
     broken.write_text("#!/bin/sh\necho 'no such flag' >&2\nexit 1\n", encoding="utf-8")
     broken.chmod(0o755)
     assert build(str(broken))[1].endswith("failed: no such flag")
+    assert MitsubaRender().absent() == Mitsuba().absent()
     reason = Mitsuba().absent()
     assert reason is None or "pip install 'radiokit[mitsuba]'" in reason or "DRJIT_LIBLLVM_PATH" in reason
 
@@ -336,6 +415,8 @@ def test_the_command_compares_with_an_earlier_run(run, tmp_path, monkeypatch, fo
     assert (code, err) == (0, "")
     assert "nothing is slower or less accurate than in" in out
     assert "radiokit / peer" in out
+    assert "throughput: ggx-0.3-at-60deg, 262144 samples" in out
+    assert "Numba cache" in out
     better = changed(quiet(found.to_json()), "mc", relative_seconds=0.1, relative_best=0.1)
     path.write_text(json.dumps(better), encoding="utf-8")
     monkeypatch.setattr(comparing, "NOISE", 0.0)

@@ -27,7 +27,7 @@ from radiokit.contracts.scalar import ScalarBSDF
 from radiokit.facts.directions import half_vector, reflect, spherical_to_cartesian, unit
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
-from radiokit.measure.montecarlo import Moments
+from radiokit.measure.moments import Moments
 from radiokit.measure.passes import run
 from radiokit.measure.proof import proved_zero
 from radiokit.measure.quadrature import hemisphere

@@ -141,6 +141,7 @@ def test_parameters_reach_models_and_functions(folder, run):
         (["check"], "Missing argument 'TARGET'"),
         (["albedo", "ggx", "--theta", "90"], "theta = 90.0 is not allowed: it must be in [0, 90) degrees"),
         (["albedo", "ggx", "--method", "guess"], "method = 'guess' is not allowed"),
+        (["albedo", "ggx", "--seconds", "1"], "seconds = 1.0 is not allowed: it must be None, or method"),
         (["albedo", "ggx", "--samples", "many"], "Invalid value for '--samples'"),
         (["cases", "nosuch"], "unknown case 'nosuch'"),
         (["validate", "--workers", "0"], "workers = 0 is not allowed"),
@@ -167,6 +168,34 @@ def test_an_inconclusive_check_exits_with_3(folder, run):
         encoding="utf-8",
     )
     assert run("check", "odd.py:f", "--law", "reciprocity")[0] == 3
+
+
+@pytest.mark.parametrize("method", ["mc", "qmc"])
+def test_a_sampled_albedo_stops_at_its_tolerance_and_says_when_it_could_not(run, method):
+    arguments = (
+        "albedo",
+        "ggx",
+        "--alpha",
+        "0.3",
+        "--theta",
+        "60",
+        "--method",
+        method,
+        "--seed",
+        "1",
+        "--json",
+    )
+    code, out, err = run(*arguments, "--rtol", "2e-3")
+    found = json.loads(out)
+    assert (code, err, found["converged"]) == (0, "", True)
+    assert found["error"] <= 2e-3 * found["value"]
+    assert found["evaluations"] < 1 << 20
+    code, out, _ = run(*arguments, "--rtol", "1e-12", "--samples", "4096")
+    assert (code, json.loads(out)["converged"]) == (3, False)
+    assert "rtol = 1e-12 was not reached with 4096 samples, but " in json.loads(out)["note"]
+    code, out, _ = run(*arguments, "--seconds", "0.02", "--samples", str(1 << 28))
+    assert (code, json.loads(out)["converged"]) == (3, False)
+    assert run(*arguments, "--seconds", "0.02")[0] == 0
 
 
 def test_cases_are_listed_shown_and_run(run):

@@ -10,8 +10,11 @@ import mpmath
 import numpy as np
 import pytest
 
+import radiokit as rk
 from radiokit.facts.errors import CallableError, NonFiniteError, ParameterError
-from radiokit.measure.montecarlo import Moments, block_generator, mean, seed_from
+from radiokit.measure.fused import FusedDraw, fused_mean
+from radiokit.measure.moments import Moments
+from radiokit.measure.montecarlo import block_generator, mean, seed_from
 from radiokit.measure.statistics import binomial_interval, sidak, z_test
 
 LEVEL = 1e-6  # chance that a right thing is rejected in a test of this file
@@ -182,7 +185,8 @@ def test_a_rare_event_does_not_stop_early_nor_pass_unremarked(seed):
 def test_what_was_not_reached_is_said(seed):
     short = mean(square, samples=1000, rng=seed, rtol=1e-9)
     assert not short.converged
-    assert short.note == "rtol = 1e-09 was not reached with 1000 samples"
+    reached = f"{short.error / short.value:.1e}"
+    assert short.note == f"rtol = 1e-09 was not reached with 1000 samples, but {reached}"
     late = mean(square, samples=10**12, rng=seed, block=1000, seconds=0.02)
     assert not late.converged
     assert 1000 <= late.evaluations < 10**12
@@ -200,6 +204,123 @@ def test_memory_does_not_grow_with_the_samples(seed):
 
     peak(2048)
     assert peak(400_000) < 1.5 * peak(40_000)
+
+
+# Early stops of the albedo
+
+GGX_ALBEDO = rk.case("ggx-0.3-in-furnace-at-60deg").exact
+
+
+@pytest.fixture(scope="module")
+def rough():
+    return rk.bsdf("ggx", alpha=0.3), (np.sin(np.pi / 3), 0.0, np.cos(np.pi / 3))
+
+
+@pytest.mark.parametrize("method", ["mc", "qmc"])
+def test_an_albedo_stops_at_the_tolerance(method, rough, seed):
+    found = rk.albedo(*rough, method=method, rtol=2e-3, rng=seed % 1000)
+    assert found.converged
+    assert found.error <= 2e-3 * found.value
+    assert found.evaluations < 1 << 18
+    assert found.evaluations & (found.evaluations - 1) == 0
+    assert z_test(found, GGX_ALBEDO) > LEVEL
+    again = rk.albedo(*rough, method=method, rtol=2e-3, rng=seed % 1000)
+    assert (found.value, found.error) == (again.value, again.error)
+
+
+def test_without_a_tolerance_all_samples_are_drawn(rough, seed):
+    assert rk.albedo(*rough, method="mc", rng=seed % 1000).evaluations == 1 << 20
+    assert rk.albedo(*rough, method="mc", samples=5000, rng=seed % 1000).evaluations == 5000
+
+
+def test_a_compiled_early_stop_does_not_depend_on_the_threads(rough, seed):
+    f, wo = rough
+    kernel, constants = f.weight_kernel(np.array(wo))
+    for rtol in (1e-2, 3e-4, 1.2e-4):  # within the first block, after it, and after several
+        found = [
+            fused_mean(kernel, constants, samples=1 << 24, rng=seed % 1000, rtol=rtol, workers=workers)
+            for workers in (1, 2, 3)
+        ]
+        assert len({(each.value, each.error, each.evaluations) for each in found}) == 1
+        assert found[0].converged
+    plain = FusedDraw(lambda *u: kernel(*u), constants)
+    stopped = mean(plain, samples=1 << 20, rng=seed % 1000, block=1 << 20, rtol=1e-2)
+    same = fused_mean(kernel, constants, samples=1 << 24, rng=seed % 1000, rtol=1e-2)
+    assert stopped.evaluations == same.evaluations, "the same samples, with or without a compiler"
+    assert stopped.value == pytest.approx(same.value, rel=1e-12)
+
+
+@pytest.mark.parametrize("samples", [2, 4095, 4097, 70_000, (1 << 20) + 1])
+def test_parts_of_the_first_block_are_all_of_it(samples, seed):
+    """An unreachable tolerance draws what none draws: the same samples, summed in other parts."""
+    draw = FusedDraw(lambda u0, u1: u0 * u1)
+    every, parts = (mean(draw, samples=samples, rng=seed, block=1 << 20, rtol=r) for r in (None, 1e-12))
+    assert every.evaluations == parts.evaluations == samples
+    assert parts.value == pytest.approx(every.value, rel=1e-12)
+    assert parts.error == pytest.approx(every.error, rel=1e-9)
+
+
+@pytest.mark.parametrize(("method", "rtol"), [("mc", 6e-3), ("mc", 1.5e-3), ("qmc", 1e-3)])
+def test_the_interval_of_an_albedo_covers_after_an_early_stop(method, rtol, rough, seed):
+    """95 % intervals of 600 seeds, which stop at the first look or after several: 93 to 97 %."""
+    trials = 600
+    found = [rk.albedo(*rough, method=method, rtol=rtol, rng=seed % 10**6 + i) for i in range(trials)]
+    assert all(estimate.converged for estimate in found)
+    low, high = binomial_interval(sum(each.covers(GGX_ALBEDO) for each in found), trials, 1 - LEVEL)
+    assert low <= 0.97
+    assert high >= 0.93
+
+
+@pytest.mark.parametrize("method", ["mc", "qmc"])
+def test_planted_tolerances_out_of_reach_are_said(method, rough, seed):
+    found = rk.albedo(*rough, method=method, rtol=1e-12, samples=4096, rng=seed % 1000)
+    assert not found.converged
+    reached = f"{found.error / found.value:.1e}"
+    assert found.note == f"rtol = 1e-12 was not reached with 4096 samples, but {reached}"
+    both = rk.albedo(rough[0], np.array([rough[1]] * 2), method=method, rtol=1e-12, samples=4096, rng=1)
+    assert not both.converged
+    assert "rtol = 1e-12 was not reached" in both.note
+
+
+@pytest.mark.parametrize("method", ["mc", "qmc"])
+@pytest.mark.parametrize("model", ["ggx", "own"])
+def test_a_time_limit_holds_and_is_no_failure_where_nothing_else_was_asked(method, model, rough, seed):
+    f = rough[0] if model == "ggx" else lambda wi, wo: wi[:, 2] / np.pi
+    rk.albedo(f, rough[1], method=method, samples=1024)  # compiles, outside of the time
+    found = rk.albedo(f, rough[1], method=method, seconds=0.05, rng=seed % 1000)
+    assert found.converged
+    assert found.evaluations > 1 << 12
+    assert 0.02 < found.seconds < 3
+    assert found.note.endswith("samples: 0.05 s were up") or found.evaluations == 1 << 28
+    short = rk.albedo(f, rough[1], method=method, seconds=0.01, samples=1 << 28, rng=seed % 1000)
+    assert not short.converged
+    assert f" of {1 << 28} samples: 0.01 s were up" in short.note
+    aimed = rk.albedo(f, rough[1], method=method, seconds=0.01, rtol=1e-15, rng=seed % 1000)
+    assert not aimed.converged
+    assert "rtol = 1e-15 was not reached" in aimed.note
+
+
+def test_directions_share_the_time(rough, seed):
+    f, wo = rough
+    found = rk.albedo(f, np.array([wo] * 4), method="mc", seconds=0.1, rng=seed % 1000)
+    assert found.value.shape == (4,)
+    assert found.seconds < 3
+    assert np.max(found.error) < 4 * np.min(found.error)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"seconds": 0.0, "method": "mc"}, "seconds = 0.0 is not allowed: it must be above 0, or None"),
+        ({"seconds": 1.0}, "seconds = 1.0 is not allowed: it must be None, or method 'mc' or 'qmc'"),
+        ({"rtol": -1.0, "method": "qmc"}, "rtol = -1.0 is not allowed: it must be above 0, or None"),
+        ({"samples": 1, "method": "mc"}, "samples = 1 is not allowed: it must be an integer, at least 2"),
+    ],
+)
+def test_limits_out_of_range(arguments, message, rough):
+    with pytest.raises(ParameterError) as caught:
+        rk.albedo(*rough, **arguments)
+    assert str(caught.value) == message
 
 
 # Seeds
@@ -256,6 +377,7 @@ def test_an_error_in_the_draw_is_not_swallowed(seed):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
+        ({"samples": None}, "samples = None is not allowed: it must be an integer, at least 2"),
         ({"samples": 1}, "samples = 1 is not allowed: it must be an integer, at least 2"),
         ({"samples": 10.0}, "samples = 10.0 is not allowed: it must be an integer, at least 2"),
         ({"samples": True}, "samples = True is not allowed: it must be an integer, at least 2"),

@@ -167,8 +167,13 @@ def albedo(
     theta: Theta = 0.0,
     phi: Phi = 0.0,
     method: Annotated[str, typer.Option(help="quadrature, mc or qmc.")] = "quadrature",
-    rtol: Annotated[float, typer.Option(help="Relative error asked of the quadrature.")] = 1e-6,
-    samples: Annotated[int, typer.Option(help="Samples for Monte Carlo.")] = 1 << 20,
+    rtol: Annotated[
+        float | None, typer.Option(help="Relative error asked for; 1e-6 of the quadrature.")
+    ] = None,
+    seconds: Annotated[float | None, typer.Option(help="Time limit for Monte Carlo.")] = None,
+    samples: Annotated[
+        int | None, typer.Option(help="Samples for Monte Carlo, at most with --rtol or --seconds.")
+    ] = None,
     seed: Annotated[int | None, typer.Option(help="Seed for Monte Carlo.")] = None,
     json: Json = False,
 ) -> None:
@@ -177,7 +182,16 @@ def albedo(
 
     f = _load(target, context)
     wo = _direction(theta, phi)
-    found = integrate(f, wo, method=method, rtol=rtol, samples=samples, rng=seed)  # type: ignore[arg-type]
+    aim = 1e-6 if rtol is None and method == "quadrature" else rtol
+    found = integrate(
+        f,
+        wo,
+        method=method,  # type: ignore[arg-type]
+        rtol=aim,
+        seconds=seconds,
+        samples=samples,
+        rng=seed,
+    )
     if json:
         show_json({"target": target, "theta_deg": theta, "phi_deg": phi, **found.to_json()})
     else:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,8 @@ from radiokit.facts.errors import NonFiniteError, ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.elementary import key_of, stream, uniform
 from radiokit.measure.kernels import Kernel, bind, compile_with, numba_runs
-from radiokit.measure.montecarlo import BlockDraw, Moments, mean
+from radiokit.measure.moments import Moments
+from radiokit.measure.montecarlo import BlockDraw, mean
 from radiokit.measure.passes import processors
 
 __all__ = ["FusedDraw", "fused_mean", "points"]
@@ -155,8 +156,10 @@ def fused_mean(
     parameters: tuple[float, ...] = (),
     *,
     dimensions: int = 2,
-    samples: int,
+    samples: int | None,
     rng: int | np.random.Generator | None = None,
+    rtol: float | None = None,
+    seconds: float | None = None,
     workers: int | None = None,
     method: str = "Monte Carlo",
 ) -> Estimate:
@@ -172,10 +175,15 @@ def fused_mean(
     parameters : tuple of float
     dimensions : int
         Of the points: 2 or 3.
-    samples : int
-        At least 2.
+    samples : int or None
+        At least 2; with ``rtol`` or ``seconds``, the most that are drawn. None with ``seconds``: as many as
+        there is time for.
     rng : int, numpy.random.Generator or None
         The seed, a generator to draw one from, or None for fresh entropy.
+    rtol, seconds : float, optional
+        When to stop early, as for ``montecarlo.mean``: at this standard error beside the mean, which is
+        looked at after 4096, 8192, ... samples, or after so much time [s], to within a block: 2²⁰ samples of
+        a kernel, 8192 of another function.
     workers : int, optional
         Threads; by default as many as there are processors, and one for a callable that is no kernel.
     method : str
@@ -201,7 +209,11 @@ def fused_mean(
         raise ParameterError("dimensions", dimensions, "2 or 3")
     draw = FusedDraw(function, tuple(map(float, parameters)), dimensions)
     draw.prepare()
-    if count == 1 or type(samples) is not int or samples <= BLOCK:
-        return mean(draw, samples=samples, rng=rng, block=BLOCK, method=method)
+    block = BLOCK if isinstance(function, Kernel) else _PIECE  # which may be slow
+    run = partial(
+        mean, draw, samples=samples, rng=rng, block=block, rtol=rtol, seconds=seconds, method=method
+    )
+    if count == 1 or (samples is not None and (type(samples) is not int or samples <= block)):
+        return run()
     with ThreadPoolExecutor(count) as pool:
-        return mean(draw, samples=samples, rng=rng, block=BLOCK, method=method, executor=pool)
+        return run(executor=pool)

@@ -70,7 +70,7 @@ class Kernel:
 
     @cached_property
     def inlined(self) -> Any:
-        """The Numba function that other compiled functions take in whole."""
+        """The Numba function that other compiled functions take in whole; Python cannot call it."""
         return _inlined(self, _FAST)
 
     @cached_property
@@ -164,7 +164,10 @@ def compile_with(
 def _inlined(function: Kernel, math: set[str]) -> Any:
     import numba
 
-    return numba.njit(forceinline=True, fastmath=math, **_FLAGS)(_linked(function.function, {}, math))
+    alone = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # only compiled functions call it
+    return numba.njit(forceinline=True, fastmath=math, **alone, **_FLAGS)(
+        _linked(function.function, {}, math)
+    )
 
 
 def _named(function: Callable[..., Any], bound: dict[str, Kernel]) -> dict[str, Any]:

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from radiokit.facts.errors import CallableError, NonFiniteError, ParameterError
 from radiokit.facts.estimate import Estimate, student_widening
 from radiokit.measure.lattice import KOROBOV_LOG2, korobov
-from radiokit.measure.montecarlo import seed_from
+from radiokit.measure.montecarlo import ENDLESS, but, seed_from
 
 __all__ = ["REPLICATES", "DrawFromPoints", "lattice_samples", "mean"]
 
@@ -35,7 +35,7 @@ def mean(
     draw_from_points: DrawFromPoints,
     *,
     dimensions: int,
-    samples: int,
+    samples: int | None,
     replicates: int = REPLICATES,
     rng: int | np.random.Generator | None = None,
     rtol: float | None = None,
@@ -56,17 +56,18 @@ def mean(
         finite values.
     dimensions : int
         At least 1. The lattice was searched for in up to 4.
-    samples : int
+    samples : int or None
         The most that are drawn, at least ``replicates``: rounded down to ``replicates`` times a power of
-        2, at most 2²⁴.
+        2, at most 2²⁴. None with ``seconds``: as many as there is time for.
     replicates : int
         Independent shifts, 8 to 32. Fewer leave the error less certain, more make each lattice coarser.
     rng : int, numpy.random.Generator or None
         The seed, a generator to draw one from, or None for fresh entropy.
     rtol : float, optional
         Above 0. Stop when every error is within ``rtol`` of its mean's magnitude. This is looked at each
-        time the lattice has doubled, from 32 points in each replicate on; nothing stops while a single
-        replicate makes nearly all of the variance, or while every sample was 0.
+        time the lattice has doubled, from 32 points in each replicate on, and must hold twice in a row: an
+        error from few replicates is often small by luck, and stopping there would claim too little. Nothing
+        stops while a single replicate makes nearly all of the variance, or while every sample was 0.
     seconds : float, optional
         Above 0. Stop after the first chunk that ends later than this [s], and return the last lattice that
         is complete; the answer then depends on the machine's speed.
@@ -79,7 +80,7 @@ def mean(
         Of kind ``"statistical"``, with ``replicates − 1`` degrees of freedom: ``error`` is the standard
         error times t/z, the ratio of Student's and the normal quantile at 95 %, so that value ± 1.96 error
         covers 95 %; ``interval`` and ``z_test`` go by Student's distribution at any level. ``converged`` is
-        False when ``rtol`` was not reached, or ``samples`` not drawn in time.
+        False when ``rtol`` was not reached, or ``samples`` not drawn in time; ``note`` then says what was.
 
     Raises
     ------
@@ -106,24 +107,31 @@ def mean(
     >>> estimate.covers(0.25, level=0.9999), bool(estimate.error < 1e-5), estimate.evaluations
     (True, True, 16384)
     """
-    _check(dimensions, samples, replicates, rtol, seconds)
+    wanted = ENDLESS if samples is None and seconds is not None else samples
+    _check(dimensions, wanted, replicates, rtol, seconds)
+    assert wanted is not None
     start = time.perf_counter()
     shifts = np.random.default_rng(seed_from(rng)).random((replicates, dimensions))
     run = _Run(draw_from_points, shifts, math.inf if seconds is None else start + seconds)
-    most = lattice_samples(samples, replicates) // replicates
+    most = lattice_samples(wanted, replicates) // replicates
     count = min(_FIRST_LOOK, most)  # in each replicate
     found = run.extend(0, count)
-    while not run.late and count < most and not (rtol is not None and found.within(rtol, run.all_zero)):
+    before, within = False, rtol is not None and found.within(rtol, run.all_zero and count < most)
+    while not run.late and count < most and not (before and within):
         more = run.extend(count, 2 * count)
         if run.incomplete:
             break
-        found, count = more, 2 * count
-    reached = rtol is not None and found.within(rtol, run.all_zero and count < most)
+        found, count, before = more, 2 * count, within
+        within = rtol is not None and found.within(rtol, run.all_zero and count < most)
+    reached = within and (before or count == most)
     notes = []
     if count < most and not reached:
-        notes.append(f"stopped after {run.evaluations} of {replicates * most} samples: {seconds} s were up")
-    elif rtol is not None and not reached:
-        notes.append(f"rtol = {rtol} was not reached with {replicates * most} samples")
+        due = "" if samples is None else f" of {replicates * most}"
+        notes.append(f"stopped after {run.evaluations}{due} samples: {seconds} s were up")
+    if rtol is not None and not reached:
+        notes.append(
+            f"rtol = {rtol} was not reached with {replicates * count} samples{but(found.value, found.error)}"
+        )
     if run.all_zero:
         notes.append("every sample was 0")
     if found.outlier:
@@ -135,7 +143,7 @@ def mean(
         evaluations=run.evaluations,
         seconds=time.perf_counter() - start,
         method=method,
-        converged=reached or (rtol is None and count == most),
+        converged=reached or (rtol is None and (samples is None or count == most)),
         note="; ".join(notes),
         dof=replicates - 1,
     )
@@ -220,7 +228,9 @@ class _Run:
         return values.reshape(len(index), replicates, *values.shape[1:]).sum(axis=0)
 
 
-def _check(dimensions: int, samples: int, replicates: int, rtol: float | None, seconds: float | None) -> None:
+def _check(
+    dimensions: int, samples: int | None, replicates: int, rtol: float | None, seconds: float | None
+) -> None:
     for name, count, low, high in (
         ("dimensions", dimensions, 1, math.inf),
         ("replicates", replicates, 8, 32),

@@ -8,7 +8,6 @@ from collections import deque
 from collections.abc import Callable, Generator
 from concurrent.futures import Executor, Future
 from contextlib import closing
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -17,84 +16,21 @@ import numpy.typing as npt
 
 from radiokit.facts.errors import CallableError, NonFiniteError, ParameterError
 from radiokit.facts.estimate import Estimate
+from radiokit.measure.moments import Moments
 
-__all__ = ["BlockDraw", "Draw", "Moments", "block_generator", "mean", "seed_from"]
+__all__ = ["ENDLESS", "BlockDraw", "Draw", "block_generator", "but", "mean", "seed_from"]
 
 FloatArray = npt.NDArray[np.float64]
 
 Draw = Callable[[np.random.Generator, int], npt.ArrayLike]
 """``draw(generator, n)`` returns n independent values ``(n,)``, or ``(n, K)``, whose mean is wanted."""
 
+ENDLESS = 1 << 62
+"""More samples than anyone has time for."""
+
+_FIRST_LOOK = 4096  # samples of a ``BlockDraw`` before a tolerance is looked at
 _IN_FLIGHT = 256  # blocks handed to an executor at a time: results are small, and so stays the memory
-_UNDERFLOW = 1e-280  # sums of squares below this may have lost terms
 _DOMINANCE = 0.1  # above this share of the variance in one sample, the central limit is not near
-
-
-@dataclass(frozen=True)
-class Moments:
-    """Count, mean and sum of squared deviations of values that need not be kept, with their range.
-
-    Batches are merged by the pairwise update, which keeps the digits of a variance that is small beside
-    the mean, as the sum of squares does not. All but ``count`` are scalars or have shape ``(K,)``.
-
-    Source: Chan, Golub, LeVeque (1983), Algorithms for computing the sample variance, The American
-    Statistician 37(3), doi:10.1080/00031305.1983.10483115: the corrected two-pass algorithm within a batch,
-    the pairwise update between batches.
-
-    >>> moments = Moments.of([1e9, 1e9 + 2]).merge(Moments.of([1e9 + 1]))
-    >>> float(moments.mean - 1e9), float(moments.variance)
-    (1.0, 1.0)
-    """
-
-    count: int
-    mean: Any
-    m2: Any
-    low: Any
-    high: Any
-
-    @classmethod
-    def of(cls, values: npt.ArrayLike) -> Moments:
-        """Return the moments of ``values``, shape ``(n,)`` or ``(n, K)`` with n ≥ 1."""
-        x = np.asarray(values, dtype=np.float64)
-        if x.ndim not in (1, 2) or not len(x):
-            raise ParameterError("values", x, "of shape (n,) or (n, K) with n at least 1")
-        # About a value of the sample, so that a constant has exactly its own mean and no variance.
-        offset = x - x[0]
-        shift = np.mean(offset, axis=0)
-        offset -= shift
-        residue = np.sum(offset, axis=0)
-        m2 = np.sum(offset * offset, axis=0) - residue * residue / len(x)
-        return cls(len(x), x[0] + shift, np.maximum(m2, 0.0), np.min(x, axis=0), np.max(x, axis=0))
-
-    def merge(self, other: Moments) -> Moments:
-        """Return the moments of both batches together."""
-        count = self.count + other.count
-        delta = other.mean - self.mean
-        return Moments(
-            count,
-            self.mean + delta * (other.count / count),
-            self.m2 + other.m2 + delta * delta * (self.count * (other.count / count)),
-            np.minimum(self.low, other.low),
-            np.maximum(self.high, other.high),
-        )
-
-    @property
-    def variance(self) -> Any:
-        """The unbiased sample variance; infinite for a single value."""
-        return self.m2 / (self.count - 1) if self.count > 1 else np.full_like(self.m2, np.inf)[()]
-
-    @property
-    def standard_error(self) -> Any:
-        """The standard error of the mean; its largest possible value where the squares underflow."""
-        most = 0.5 * (self.high - self.low) / np.sqrt(max(1, self.count - 1))
-        return np.where(self.m2 < _UNDERFLOW, most, np.sqrt(self.variance / self.count))[()]
-
-    @property
-    def dominance(self) -> Any:
-        """The share of the variance that comes from the one sample farthest from the mean."""
-        farthest = np.maximum(self.high - self.mean, self.mean - self.low)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return np.where(self.m2 > 0, np.minimum(farthest * farthest / self.m2, 1.0), 0.0)[()]
 
 
 class BlockDraw(ABC):
@@ -133,7 +69,7 @@ def block_generator(seed: int, index: int) -> np.random.Generator:
 def mean(
     draw: Draw | BlockDraw,
     *,
-    samples: int,
+    samples: int | None,
     rng: int | np.random.Generator | None = None,
     block: int = 65536,
     rtol: float | None = None,
@@ -152,8 +88,9 @@ def mean(
     draw : callable or BlockDraw
         ``draw(generator, n)`` returns ``(n,)`` or ``(n, K)`` finite values. It must be picklable for an
         executor of processes and thread-safe for one of threads. A ``BlockDraw`` has no generators.
-    samples : int
-        At least 2; with ``rtol`` or ``seconds``, the most that are drawn.
+    samples : int or None
+        At least 2; with ``rtol`` or ``seconds``, the most that are drawn. None with ``seconds``: as many as
+        there is time for.
     rng : int, numpy.random.Generator or None
         The seed, a generator to draw one from, or None for fresh entropy.
     block : int
@@ -161,8 +98,8 @@ def mean(
     rtol : float, optional
         Above 0. Stop when every standard error is within ``rtol`` of its mean's magnitude. This is looked
         at after 1, 2, 4, 8, ... blocks only: the fewer the looks, the smaller the bias from stopping at a
-        lucky moment. Nothing stops while a single sample carries over a tenth of the variance, or while
-        every sample was 0.
+        lucky moment. A ``BlockDraw`` is looked at within its first block too, at its last few halves.
+        Nothing stops while a single sample carries over a tenth of the variance, or while every sample was 0.
     seconds : float, optional
         Above 0. Stop after the first block that ends later than this [s]; the answer then depends on the
         machine's speed.
@@ -175,7 +112,8 @@ def mean(
     -------
     Estimate
         Of kind ``"statistical"``. ``error`` includes the mean's rounding, so it is 0 for a mean of 0 only.
-        ``converged`` is False when ``rtol`` was not reached, or ``samples`` not drawn in time.
+        ``converged`` is False when ``rtol`` was not reached, or ``samples`` not drawn in time; ``note``
+        then says what was.
 
     Raises
     ------
@@ -190,20 +128,24 @@ def mean(
     >>> estimate.covers(0.5, level=0.9999), estimate.evaluations
     (True, 100000)
     """
-    for name, count, least in (("samples", samples, 2), ("block", block, 1)):
+    most = ENDLESS if samples is None and seconds is not None else samples
+    for name, count, least in (("samples", most, 2), ("block", block, 1)):
         if not (type(count) is int or isinstance(count, np.integer)) or count < least:
             raise ParameterError(name, count, f"an integer, at least {least}")
+    assert most is not None
     for name, limit in (("rtol", rtol), ("seconds", seconds)):
         if limit is not None and not limit > 0:
             raise ParameterError(name, limit, "above 0, or None")
     start = time.perf_counter()
-    blocks = -(-samples // block)
-    work = partial(_block, draw, seed_from(rng), block, samples)
+    halvings = _halvings(block) if isinstance(draw, BlockDraw) and rtol is not None else 0
+    blocks = _blocks(most, block, halvings)
+    work = partial(_block, draw, seed_from(rng), block, most, halvings)
     total = Moments(0, 0.0, 0.0, np.inf, -np.inf)
     reached = late = False
     done = 0
     while done < blocks and not (reached or late):
-        goal = blocks if rtol is None else min(max(1, 2 * done), blocks)
+        whole = max(1, done - halvings)  # blocks, once the first one is complete
+        goal = blocks if rtol is None else min(done + (whole if done > halvings else 1), blocks)
         with closing(_in_order(work, done, goal, executor)) as parts:
             for part in parts:
                 if done and np.shape(part.mean) != np.shape(total.mean):
@@ -218,10 +160,11 @@ def mean(
         if rtol is not None and something and np.all(total.dominance <= _DOMINANCE):
             reached = bool(np.all(error <= rtol * np.abs(total.mean)))
     notes = []
-    if total.count < samples and not reached:
-        notes.append(f"stopped after {total.count} of {samples} samples: {seconds} s were up")
-    elif rtol is not None and not reached:
-        notes.append(f"rtol = {rtol} was not reached with {samples} samples")
+    if total.count < most and not reached:
+        wanted = "" if samples is None else f" of {samples}"
+        notes.append(f"stopped after {total.count}{wanted} samples: {seconds} s were up")
+    if rtol is not None and not reached:
+        notes.append(f"rtol = {rtol} was not reached with {total.count} samples{but(total.mean, error)}")
     if not np.any(total.low) and not np.any(total.high):
         notes.append("every sample was 0")
     if np.any(total.dominance > _DOMINANCE):
@@ -234,16 +177,57 @@ def mean(
         evaluations=total.count,
         seconds=time.perf_counter() - start,
         method=method,
-        converged=reached or (rtol is None and total.count == samples),
+        converged=reached or (rtol is None and (samples is None or total.count == samples)),
         note="; ".join(notes),
     )
 
 
-def _block(draw: Draw | BlockDraw, seed: int, block: int, samples: int, index: int) -> Moments:
+def but(value: Any, error: Any) -> str:
+    """Return what relative error was reached instead of a tolerance, for a note.
+
+    >>> but(0.5, 0.01)
+    ', but 2.0e-02'
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        reached = float(np.max(np.divide(error, np.abs(value))))
+    return f", but {reached:.1e}" if np.isfinite(reached) else ""
+
+
+def _halvings(block: int) -> int:
+    """Return how often a block's first look is halved: down to ``_FIRST_LOOK`` samples or so."""
+    return max(0, (block // _FIRST_LOOK).bit_length() - 1)
+
+
+def _bounds(index: int, block: int, halvings: int) -> tuple[int, int]:
+    """Return the first sample of a block and the first of the next.
+
+    The block 0 comes in parts: of the samples up to ``block >> halvings``, then as many again, and so on.
+
+    >>> [_bounds(index, 8, 2) for index in range(5)]
+    [(0, 2), (2, 4), (4, 8), (8, 16), (16, 24)]
+    """
+    if index <= halvings:
+        return (block >> (halvings + 1 - index) if index else 0), block >> (halvings - index)
+    return (index - halvings) * block, (index - halvings + 1) * block
+
+
+def _blocks(samples: int, block: int, halvings: int) -> int:
+    """Return how many blocks ``samples`` make, the parts of the first counted.
+
+    >>> [_blocks(samples, 8, 2) for samples in (1, 2, 3, 8, 9, 17)]
+    [1, 1, 2, 3, 4, 5]
+    """
+    if samples > block:
+        return halvings - (-samples // block)
+    return next(index for index in range(halvings + 1) if samples <= block >> (halvings - index)) + 1
+
+
+def _block(draw: Draw | BlockDraw, seed: int, block: int, samples: int, halvings: int, index: int) -> Moments:
     """Draw one block and return its moments."""
-    size = min(block, samples - index * block)
+    first, end = _bounds(index, block, halvings)
+    size = min(end, samples) - first
     if isinstance(draw, BlockDraw):
-        return draw.moments(seed, index * block, size)
+        return draw.moments(seed, first, size)
     values = np.asarray(draw(block_generator(seed, index), size), dtype=np.float64)
     if values.ndim not in (1, 2) or len(values) != size:
         problem = f"returned shape {values.shape} where ({size},) or ({size}, K) is due"

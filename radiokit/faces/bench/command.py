@@ -75,6 +75,12 @@ def _show(found: Any) -> None:
             for each in found.ratios
         ],
     )
+    show_table(
+        f"throughput: {found.throughput[0].task}, {size_text(found.throughput[0].size)} samples, "
+        f"{found.machine['threads']} threads",
+        ("method", "million samples / s", "radiokit / it", "efficiency", "error", "claimed"),
+        list(_throughput(found)),
+    )
     for name, note in found.notes.items():
         write(f"{name}: {note}")
     for name, reason in found.absent.items():
@@ -86,18 +92,24 @@ def _show(found: Any) -> None:
     )
     show_table(
         "how the error falls with the evaluations N, or the nodes n along an axis",
-        ("method", "tasks", "law", "median", "from", "to"),
+        ("method", "tasks", "law", "median", "from", "to", "digits a node", "due", "met by"),
         list(_slopes(found.slopes)),
     )
+    for slope in found.slopes:
+        if slope.met is False:
+            write(f"not as due: {slope.task} by {slope.method}: {slope}, where {slope.due} is due")
     show_table(
         "fresh processes, ms",
-        ("method", "samples", "import radiokit", "first call", "second call"),
+        ("method", "Numba cache", "samples", "numpy", "+ radiokit", "+ first call", "= total", "second call"),
         [
             (
                 each.method,
+                each.cache,
                 "" if each.method == "quadrature" else each.samples,
+                f"{1e3 * each.numpy_seconds:.0f}",
                 f"{1e3 * each.import_seconds:.0f}",
                 f"{1e3 * each.first_seconds:.0f}",
+                f"{1e3 * each.total_seconds:.0f}",
                 f"{1e3 * each.second_seconds:.2f}",
             )
             for each in found.starts
@@ -135,10 +147,33 @@ def _methods(rows: Any) -> Iterator[tuple[Any, ...]]:
         )
 
 
+def _throughput(found: Any) -> Iterator[tuple[Any, ...]]:
+    ratios = {each.peer: each for each in found.throughput_ratios}
+    for each in found.throughput:
+        ratio = ratios.get(each.method)
+        yield (
+            each.method if ratio else f"radiokit, {each.method}",
+            f"{each.throughput / 1e6:.0f}",
+            f"{ratio.speed:.3g} ± {100 * ratio.noise:.0f} %" if ratio else "",
+            _number(ratio.efficiency) if ratio else "",
+            f"{each.true_error / abs(each.exact):.1e}",
+            f"{each.claimed_error / abs(each.exact):.1e}",
+        )
+
+
 def _slopes(slopes: Any) -> Iterator[tuple[Any, ...]]:
-    groups: dict[tuple[str, str], list[float]] = {}
+    groups: dict[tuple[str, str, str], list[Any]] = {}
     for each in slopes:
-        groups.setdefault((each.method, each.law), []).append(each.rate)
-    for (method, law), rates in groups.items():
-        shown = (median(rates), min(rates), max(rates))
-        yield (method, len(rates), "N^p" if law == "power" else "q^n", *(f"{rate:.2f}" for rate in shown))
+        groups.setdefault((each.method, each.law, each.due or ""), []).append(each)
+    for (method, law, due), group in sorted(groups.items()):
+        rates = [each.rate for each in group]
+        digits = [each.digits for each in group if each.digits is not None]
+        yield (
+            method,
+            len(group),
+            "N^p" if law == "power" else "q^n",
+            *(f"{rate:.2f}" for rate in (median(rates), min(rates), max(rates))),
+            f"{median(digits):.2f}" if digits else "",
+            due,
+            f"{sum(each.met for each in group)} of {len(group)}" if due else "",
+        )

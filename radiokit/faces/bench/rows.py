@@ -1,11 +1,10 @@
-"""Rows: what was measured, as data: answers with their errors and costs, slopes, starts and ratios."""
+"""Rows: answers as data, with their true errors, their claims and their costs."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from dataclasses import asdict, dataclass, field
-from typing import Any, Literal
+from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 
@@ -13,7 +12,7 @@ from radiokit.faces.bench.timing import Timing
 from radiokit.facts.estimate import Estimate
 from radiokit.facts.jsonable import jsonable
 
-__all__ = ["Row", "Slope", "fit", "row", "size_text"]
+__all__ = ["ROUNDING", "Row", "row", "size_text"]
 
 ROUNDING = 1e-14
 """Relative errors below this are rounding, and on no line."""
@@ -124,59 +123,3 @@ def size_text(size: float) -> str:
     ('1048576', '1e-06')
     """
     return f"{size:.0f}" if size >= 1 else f"{size:g}"
-
-
-@dataclass(frozen=True)
-class Slope:
-    """How a method's error falls on one task: as a power of the evaluations, or by a factor per node."""
-
-    task: str
-    method: str
-    law: Literal["power", "geometric"]
-    rate: float
-    points: int
-    claimed_rate: float | None = field(default=None)
-
-    def to_json(self) -> dict[str, Any]:
-        """Return the slope as JSON-ready data."""
-        return {name: jsonable(value) for name, value in asdict(self).items()}
-
-    def __str__(self) -> str:
-        return f"N^{self.rate:.2f}" if self.law == "power" else f"{self.rate:.2f}^n"
-
-
-def fit(rows: Iterable[Row]) -> list[Slope]:
-    """Return the slopes of all methods on all tasks that leave at least three points above rounding.
-
-    A law is ``geometric``, error ~ rateⁿ for n nodes along an axis, where that fits the logarithms of the
-    errors better than a power of the evaluations does; sampled means are always fitted by a power.
-    """
-    groups: dict[tuple[str, str], list[Row]] = {}
-    for each in rows:
-        if each.method != "quadrature" and each.true_error > 10 * ROUNDING * abs(each.exact):
-            groups.setdefault((each.task, each.method), []).append(each)
-    found = []
-    for (task, method), group in groups.items():
-        if len(group) < 3:
-            continue
-        errors = np.log([each.true_error for each in group])
-        work = np.log([each.evaluations for each in group])
-        power, misfit = _line(work, errors)
-        if group[0].kind == "statistical":
-            claimed = [each.claimed_error or math.nan for each in group]
-            rate = _line(work, np.log(claimed))[0] if min(claimed) > 0 else None
-            found.append(Slope(task, method, "power", power, len(group), rate))
-            continue
-        per_node, other = _line(np.array([each.size for each in group]), errors)
-        if other <= misfit:
-            found.append(Slope(task, method, "geometric", math.exp(per_node), len(group)))
-        else:
-            found.append(Slope(task, method, "power", power, len(group)))
-    return found
-
-
-def _line(x: Any, y: Any) -> tuple[float, float]:
-    """Return the slope of the line through the points, and the sum of squares that it leaves."""
-    design = np.stack([np.asarray(x, dtype=float), np.ones(len(x))], axis=1)
-    (slope, offset), *_ = np.linalg.lstsq(design, np.asarray(y), rcond=None)
-    return float(slope), float(np.sum((design @ [slope, offset] - y) ** 2))

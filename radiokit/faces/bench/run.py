@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
-from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 import numpy as np
 
 from radiokit.bsdfs.ggx import GGX
 from radiokit.contracts.albedo import albedo
+from radiokit.faces.bench.machine import whole_machine
 from radiokit.faces.bench.methods import METHODS, SAMPLED, Method
 from radiokit.faces.bench.peers import Peer, all_peers
-from radiokit.faces.bench.rows import Row, Slope, fit, row
+from radiokit.faces.bench.rows import Row, row
+from radiokit.faces.bench.slopes import Slope, fit
 from radiokit.faces.bench.starts import Start, starts
 from radiokit.faces.bench.tasks import Task, ggx_albedo, tasks, towards
 from radiokit.faces.bench.timing import interleave, standard_work
-from radiokit.faces.validate import machine
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.jsonable import jsonable
 
@@ -29,7 +28,10 @@ HEADLINES = ((0.3, 60.0), (1.0, 60.0), (0.05, 60.0), (0.05, 89.0), (0.001, 60.0)
 """Widths and angles at which radiokit is put beside its peers."""
 
 SAMPLES, QUICK_SAMPLES = 1 << 20, 1 << 16
+MANY_SAMPLES, QUICK_MANY_SAMPLES = 1 << 24, 1 << 18
+"""For the throughput, where no start of threads counts."""
 RTOL = 1e-6
+PAUSE = 0.03
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,9 @@ class Bench:
     machine: dict[str, str]
     ratios: tuple[Ratio, ...]
     peers: tuple[Row, ...]
+    throughput: tuple[Row, ...]
+    """radiokit's Monte Carlo and its peers on one albedo, at 2²⁴ samples."""
+    throughput_ratios: tuple[Ratio, ...]
     absent: dict[str, str]
     notes: dict[str, str]
     rows: tuple[Row, ...]
@@ -79,7 +84,7 @@ class Bench:
 
     def to_json(self) -> dict[str, Any]:
         """Return the run as JSON-ready data, which ``compare`` reads."""
-        parts = ("ratios", "peers", "rows", "slopes", "starts")
+        parts = ("ratios", "peers", "throughput", "throughput_ratios", "rows", "slopes", "starts")
         return {
             "format": 1,
             "settings": self.settings,
@@ -121,7 +126,7 @@ def bench(
         if isinstance(number, bool) or not isinstance(number, int) or number < least:
             raise ParameterError(name, number, f"an integer, at least {least}")
     chosen, headlines = tasks(quick), HEADLINES[:1] if quick else HEADLINES
-    total = len(chosen) + len(headlines) + 1
+    total = len(chosen) + len(headlines) + 2
     steps = iter(range(1, total + 1))
 
     def done() -> None:
@@ -139,6 +144,16 @@ def bench(
         beside += found
         ratios += compared
         done()
+    many = QUICK_MANY_SAMPLES if quick else MANY_SAMPLES
+    quickest, throughput = measure_peers(
+        *HEADLINES[0],
+        [peer for peer in present if peer.rival == "mc" and peer.most >= many],
+        methods=("mc",),
+        samples=many,
+        seed=seed,
+        repeats=count if quick else 2 * count + 1,
+    )
+    done()
     rows: list[Row] = []
     for task in chosen:
         rows += measure(task, METHODS, quick=quick, seed=seed, repeats=count)
@@ -146,25 +161,26 @@ def bench(
     begun = starts(("quadrature", *SAMPLED), samples=samples, repeats=1 if quick else 3)
     done()
     return Bench(
-        settings={"quick": quick, "seed": seed, "repeats": count, "samples": samples, "rtol": RTOL},
-        machine=machine() | {"processors": str(os.cpu_count())} | dict(_versions()),
+        settings={
+            "quick": quick,
+            "seed": seed,
+            "repeats": count,
+            "samples": samples,
+            "throughput_samples": many,
+            "rtol": RTOL,
+        },
+        machine=whole_machine(),
         ratios=tuple(ratios),
         peers=tuple(beside),
+        throughput=tuple(quickest),
+        throughput_ratios=tuple(throughput),
         absent=absent,
         notes={peer.name: peer.note for peer in present if peer.note},
         rows=tuple(rows),
         truths={task.name: task.truth for task in chosen},
-        slopes=tuple(fit(rows)),
+        slopes=tuple(fit(rows, broad={task.name for task in chosen if task.broad}, repeats=count)),
         starts=tuple(begun),
     )
-
-
-def _versions() -> Iterator[tuple[str, str]]:
-    for package in ("numba", "mitsuba"):
-        try:
-            yield package, version(package)
-        except PackageNotFoundError:
-            continue
 
 
 def _seeds(seed: int, task: str, repeats: int) -> list[int]:
@@ -197,26 +213,32 @@ def measure_peers(
     theta_deg: float,
     peers: Sequence[Peer],
     *,
+    methods: Sequence[str] = (*SAMPLED, "quadrature"),
     samples: int = QUICK_SAMPLES,
     seed: int = 0,
     repeats: int = 7,
 ) -> tuple[list[Row], list[Ratio]]:
-    """Return the rows of radiokit and its peers on one albedo of GGX, taking turns, and their ratios."""
+    """Return the rows of radiokit and its peers on one albedo of GGX, taking turns, and their ratios.
+
+    ``methods`` are radiokit's that run; each peer's rival must be among them.
+    """
     name = f"ggx-{alpha:g}-at-{theta_deg:g}deg"
     f, wo, exact = GGX(alpha=alpha), towards(theta_deg), ggx_albedo(alpha, theta_deg)[0]
     seeds = _seeds(seed, name, repeats)
     sizes: dict[str, float] = dict.fromkeys(SAMPLED, samples) | {"quadrature": RTOL}
 
     def ours(method: Any, repeat: int) -> Any:
-        return albedo(f, wo, method=method, rtol=RTOL, samples=samples, rng=seeds[repeat])
+        if method == "quadrature":
+            return albedo(f, wo, rtol=RTOL)
+        return albedo(f, wo, method=method, samples=samples, rng=seeds[repeat])
 
     def theirs(peer: Peer, repeat: int) -> Any:
         return peer.answer(alpha, theta_deg, sizes[peer.rival], seeds[repeat])
 
-    calls: list[Callable[[int], Any]] = [standard_work, *(partial(ours, method) for method in sizes)]
+    calls: list[Callable[[int], Any]] = [standard_work, *(partial(ours, method) for method in methods)]
     calls += [partial(theirs, peer) for peer in peers]
-    unit, *timings = interleave(calls, repeats)
-    parties = [(method, size, exact) for method, size in sizes.items()]
+    unit, *timings = interleave(calls, repeats, pause=PAUSE)
+    parties = [(method, sizes[method], exact) for method in methods]
     parties += [(peer.name, sizes[peer.rival], peer.truth(alpha, theta_deg)) for peer in peers]
     rows = [
         row(name, party, size, truth, timing, unit)
@@ -229,8 +251,8 @@ def measure_peers(
 def _ratio(peer: Row, by_name: dict[str, Row], rival: str) -> Ratio:
     ours = by_name[rival]
 
-    def efficiency(mine: Row) -> float | None:
-        if peer.kind != "statistical" or not (mine.claimed_error and peer.claimed_error):
+    def efficiency(mine: Row | None) -> float | None:
+        if mine is None or peer.kind != "statistical" or not (mine.claimed_error and peer.claimed_error):
             return None
         return (peer.claimed_error / mine.claimed_error) ** 2 * peer.seconds / mine.seconds
 
@@ -242,7 +264,7 @@ def _ratio(peer: Row, by_name: dict[str, Row], rival: str) -> Ratio:
         speed=peer.seconds / ours.seconds,
         noise=float(np.hypot(peer.noise, ours.noise)),
         efficiency=efficiency(ours),
-        qmc_efficiency=efficiency(by_name["qmc"]),
+        qmc_efficiency=efficiency(by_name.get("qmc")),
         error=ours.true_error / abs(ours.exact),
         peer_error=peer.true_error / abs(peer.exact),
     )

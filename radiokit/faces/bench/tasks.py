@@ -52,6 +52,15 @@ class Task:
         """The polar angle of ``wo`` in degrees."""
         return math.degrees(math.atan2(math.hypot(self.wo[0], self.wo[1]), self.wo[2]))
 
+    @property
+    def broad(self) -> bool:
+        """Whether sampling shows its law of errors here at some thousand samples."""
+        return (self.f.lobe_width() or 1.0) >= BROAD
+
+
+BROAD = 0.15
+"""Lobe widths, in slope, from which on the weight varies gently over the square of the random numbers."""
+
 
 def tasks(quick: bool = False) -> tuple[Task, ...]:
     """Return all tasks, or four of them.

@@ -46,11 +46,17 @@ class Timing:
 
 
 def interleave(
-    calls: Sequence[Callable[[int], Any]], repeats: int, *, tick: Callable[[], None] | None = None
+    calls: Sequence[Callable[[int], Any]],
+    repeats: int,
+    *,
+    pause: float = 0.0,
+    tick: Callable[[], None] | None = None,
 ) -> list[Timing]:
     """Run each call once untimed, then all of them in turn, ``repeats`` times over.
 
-    A call gets the number of the repetition. Short calls are repeated within it, and their mean counts.
+    A call gets the number of the repetition. Short calls are repeated within it, and their mean counts. After
+    a ``pause`` [s] before each, the threads of the one before have stopped waiting for more work, as those of
+    OpenBLAS, OpenMP and Dr.Jit do in a busy loop, on the processors that the next one wants.
 
     >>> [timing.results for timing in interleave([lambda i: i, lambda i: 2 * i], 3)]
     [(0, 1, 2), (0, 2, 4)]
@@ -67,6 +73,8 @@ def interleave(
     results: list[list[Any]] = [[] for _ in calls]
     for repeat in range(repeats):
         for i, (call, count) in enumerate(zip(calls, counts, strict=True)):
+            if pause:
+                time.sleep(pause)
             start = time.perf_counter()
             for _ in range(count):
                 found = call(repeat)

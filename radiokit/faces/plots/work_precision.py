@@ -33,6 +33,7 @@ STYLES = {
     "NumPy, whole arrays": ("#444444", "1"),
     "C, OpenMP": ("#d4a017", "x"),
     "Mitsuba llvm_ad_rgb": ("#e67e22", "+"),
+    "Mitsuba llvm_ad_rgb render": ("#d35400", "*"),
     "SciPy dblquad": ("#b03a8c", "<"),
     "SciPy cubature": ("#7f8c2a", ">"),
 }

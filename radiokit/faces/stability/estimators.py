@@ -9,7 +9,7 @@ import numpy as np
 from radiokit.bsdfs.phong import Phong
 from radiokit.faces.stability.row import Row, decades
 from radiokit.facts.source import Source
-from radiokit.measure.montecarlo import Moments
+from radiokit.measure.moments import Moments
 from radiokit.measure.twin import Twin
 from radiokit.worlds.cases.furnace import phong_albedo
 

@@ -16,7 +16,7 @@ from radiokit.faces.bench.peers.peer import Peer, mean_of
 from radiokit.faces.bench.tasks import towards
 from radiokit.facts.estimate import Estimate
 
-__all__ = ["FLAGS", "Compiled", "build"]
+__all__ = ["FLAGS", "Compiled", "build", "compiler_version"]
 
 FLAGS = ("-O3", "-march=native", "-ffast-math", "-fopenmp", "-fPIC")
 
@@ -37,6 +37,16 @@ class Compiled(Peer):
         sine, _, cosine = towards(theta_deg)
         build()[0](alpha, sine, cosine, int(size), seed % 2**64, sums)
         return mean_of(sums[0], sums[1], int(size), self.name)
+
+
+@cache
+def compiler_version() -> str | None:
+    """Return what the compiler calls itself; None when it is not there."""
+    found = shutil.which(os.environ.get("CC") or "cc")
+    if found is None:
+        return None
+    done = subprocess.run([found, "--version"], capture_output=True, text=True, check=False)
+    return next(iter(done.stdout.splitlines()), None)
 
 
 @cache

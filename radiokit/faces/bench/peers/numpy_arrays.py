@@ -16,6 +16,7 @@ class NumpyArrays(Peer):
 
     name = "NumPy, whole arrays"
     rival = "mc"
+    most = 1 << 22  # which take a gigabyte
 
     def answer(self, alpha: float, theta_deg: float, size: float, seed: int) -> Estimate:
         """Return the albedo from ``size`` samples."""

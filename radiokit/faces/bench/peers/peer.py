@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from typing import ClassVar
 
@@ -17,6 +18,9 @@ class Peer(ABC):
     name: ClassVar[str]
     rival: ClassVar[str]
     """The method of ``radiokit.albedo`` that it is compared with: ``mc`` or ``quadrature``."""
+
+    most: ClassVar[float] = math.inf
+    """Samples that it has the memory for."""
 
     note: ClassVar[str] = ""
     """What must be known to read its errors."""
