@@ -9,7 +9,7 @@ import numpy as np
 
 from radiokit.measure.kernels import kernel, select
 
-__all__ = ["expm1", "key_of", "log", "sincos", "stream", "uniform"]
+__all__ = ["exp", "expm1", "key_of", "log", "sincos", "stream", "uniform"]
 
 # Random numbers: a hash of seed, dimension and index, so that any of them is had without those before it.
 
@@ -115,15 +115,36 @@ def log(x: Any) -> Any:
 
 
 @kernel
+def _exponential(x: Any) -> Any:
+    """Return 2ⁿ and exp ``r`` − 1, for the split of ``x`` into n log 2 + r."""
+    n = np.rint(x * _PER_LN2)
+    r = x - n * _LN2
+    power = np.int64((np.int64(n) + _BIAS) << _EXPONENT).view(np.float64)
+    tail = _E5 + r * (_E6 + r * (_E7 + r * (_E8 + r * (_E9 + r * _E10))))
+    return power, r + r * r * (_E0 + r * (_E1 + r * (_E2 + r * (_E3 + r * (_E4 + r * tail)))))
+
+
+@kernel
 def expm1(x: Any) -> Any:
     """Return exp ``x`` − 1 for ``x`` in [-700, 700], to 3 + |x| units in the last place.
 
     >>> float(expm1(1e-20)), float(expm1(-700.0))
     (1e-20, -1.0)
     """
-    n = np.rint(x * _PER_LN2)
-    r = x - n * _LN2
-    power = np.int64((np.int64(n) + _BIAS) << _EXPONENT).view(np.float64)
-    tail = _E5 + r * (_E6 + r * (_E7 + r * (_E8 + r * (_E9 + r * _E10))))
-    p = r + r * r * (_E0 + r * (_E1 + r * (_E2 + r * (_E3 + r * (_E4 + r * tail)))))
-    return power * p + (power - 1.0)
+    power, rest = _exponential(x)
+    return power * rest + (power - 1.0)
+
+
+_LOWEST = -708.0  # exp of less is no normal number
+
+
+@kernel
+def exp(x: Any) -> Any:
+    """Return exp ``x`` for ``x`` up to 709, to 2 + |x| units in the last place; 0 below −708.
+
+    >>> float(exp(0.0)), float(exp(-1e300))
+    (1.0, 0.0)
+    """
+    gone = x < _LOWEST
+    power, rest = _exponential(select(gone, _LOWEST, x))
+    return select(gone, 0.0, power + power * rest)
