@@ -129,7 +129,7 @@ def ggx_hidden(wx: Any, wy: Any, wz: Any, alpha_x: Any, alpha_y: Any) -> Any:
 def beckmann_hidden(wx: Any, wy: Any, wz: Any, alpha_x: Any, alpha_y: Any) -> Any:
     """Return σ(−w) = |cosθ| Λ [1] of Beckmann: the area of the facets that face away from w, seen along w.
 
-    >>> round(float(beckmann_hidden(1.0, 0.0, 0.0, 0.5, 0.25)) * np.sqrt(np.pi), 12)
+    >>> round(float(beckmann_hidden(1.0, 0.0, 0.0, 0.5, 0.25) * np.sqrt(np.pi)), 12)
     0.25
     """
     x, y, z = alpha_x * wx, alpha_y * wy, abs(wz)
@@ -166,7 +166,7 @@ def beckmann_normal(u0: Any, u1: Any, alpha_x: Any, alpha_y: Any) -> Any:
     """Return a normal (hx, hy, hz) of density D cosθ [sr⁻¹] of Beckmann, not of unit length; u0 below 1.
 
     >>> round(float(beckmann_normal(0.5, 0.0, 0.5, 0.25)[0]) ** 2, 12)
-    0.173286795140
+    0.17328679514
     """
     sine, cosine = sincos(u1)
     radius = np.sqrt(-log(1.0 - u0))

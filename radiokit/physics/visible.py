@@ -76,11 +76,13 @@ def _halley(t: Any, u: Any, v: Any, sine: Any, cosine: Any, hidden: Any) -> Any:
     k = _PER_ROOT_PI * sine
     above = 0.5 * bell * (k + cosine * ratio) - v * (cosine + hidden)
     below = u * (cosine + hidden) - hidden + 0.5 * bell * (k - cosine * ratio)
+    excess = _ROOT_PI * select(t >= 0.0, above, below)
     seen = cosine + t * sine
-    step = _ROOT_PI * select(t >= 0.0, above, below) / (seen * bell)
-    bend = 1.0 + 0.5 * step * (sine / seen - 2.0 * t)
-    step = step / select(bend > 0.25, bend, 0.25)
-    floor = -0.75 * seen / select(sine > _LEAST_SINE, sine, _LEAST_SINE)  # stays above the slopes' end
+    # Newton's step over 1 + half the step times the density's logarithmic derivative: one division.
+    least = 0.25 * seen * seen * bell
+    bent = 4.0 * least + 0.5 * excess * (sine - 2.0 * t * seen)
+    step = excess * seen / select(bent > least, bent, least)
+    floor = seen * (-0.75 / select(sine > _LEAST_SINE, sine, _LEAST_SINE))  # stays above the slopes' end
     return t + select(step > floor, step, floor)
 
 
@@ -95,7 +97,7 @@ def _start(u: Any, v: Any, sine: Any, cosine: Any, end: Any, hidden: Any) -> Any
     reach, slope = 2.0 - bell * erfcx(end), cosine + 2.0 * k  # reach = 1 + erf(end)
     inner = slope * slope - 8.0 * k * v * area
     top = 4.0 * v * area / (slope + np.sqrt(select(inner > 0.0, inner, 0.0)))  # 1 − b
-    least = np.sqrt(_EIGHT_PER_PI * u * v * area * bell / select(k > _LEAST_SINE, k, _LEAST_SINE))
+    least = np.sqrt(u * v * (_EIGHT_PER_PI * area * bell / select(k > _LEAST_SINE, k, _LEAST_SINE)))
     top = select(reach - top < least, reach - least, top)
     top = select(top > _LEAST, select(top < 2.0 - 4.0 * _LEAST, top, 2.0 - 4.0 * _LEAST), _LEAST)
     low = log(top * (2.0 - top))
@@ -106,7 +108,7 @@ def _start(u: Any, v: Any, sine: Any, cosine: Any, end: Any, hidden: Any) -> Any
     last = -end * (1.0 - 1e-6)
     t = select(t > last, t, last)
     weak = sine * bell
-    near = np.sqrt(2.0 * _ROOT_PI * u * area / select(weak > _LEAST_SINE, weak, _LEAST_SINE))
+    near = np.sqrt(u * (2.0 * _ROOT_PI * area / select(weak > _LEAST_SINE, weak, _LEAST_SINE)))
     return select((1.0 + end) * near < 0.4, near - end, t)
 
 
