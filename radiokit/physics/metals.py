@@ -1,4 +1,4 @@
-"""Metals: the index η + ik of a few, as measured, across the visible spectrum. The numbers: ``metals.json``."""
+"""Metals: the index η + ik of a few, as measured, across the visible spectrum; ``metals.json`` has it."""
 
 from __future__ import annotations
 

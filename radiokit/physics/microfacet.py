@@ -122,7 +122,7 @@ def refraction_jacobian_symbolic(wi: Vector, wo: Vector, eta: Any) -> Any:
 
 
 def refract_symbolic(wo: Vector, h: Vector, eta: Any) -> list[sympy.Expr]:
-    """Return the direction that the facet refracts to o, for o·h above 0: Walter et al. (2007), equation 40."""
+    """Return the direction refracted to o, for o·h above 0: Walter et al. (2007), equation 40."""
     import sympy
 
     c = dot_symbolic(wo, h) / sympy.sqrt(dot_symbolic(h, h))

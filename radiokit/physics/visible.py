@@ -88,7 +88,7 @@ def _halley(t: Any, u: Any, v: Any, sine: Any, cosine: Any, hidden: Any) -> Any:
 
 @kernel
 def _start(u: Any, v: Any, sine: Any, cosine: Any, end: Any, hidden: Any) -> Any:
-    """Return a slope near the one below which a share ``u`` lies: off by 0.4 at most, and by less in the tails.
+    """Return a slope near the one below which a share ``u`` lies: off by 0.4 at most, less in the tails.
 
     With b = erf t and exp(−t²) ≈ 1 − b² the share is quadratic in b; a first bound on b holds near the end.
     Nearer still, the density is that of its first term, (t + end) exp(−end²).
@@ -169,7 +169,7 @@ def groove_visible(u2: Any, ox: Any, oy: Any, oz: Any, hx: Any, hy: Any, hz: Any
 
 @kernel
 def visible_density(density: Any, cos_d: Any, area_o: Any) -> Any:
-    """Return the density [sr⁻¹] of visible normals, from D(ĥ), ``cos_d`` = o·ĥ and σ(o): 0 if that faces away.
+    """Return the density [sr⁻¹] of visible normals, from D(ĥ), ``cos_d`` = o·ĥ and σ(o); 0 for one unseen.
 
     >>> float(visible_density(1.0, 0.5, 0.5))
     1.0
