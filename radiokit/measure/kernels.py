@@ -74,6 +74,14 @@ class Kernel:
         return _inlined(self, _FAST)
 
     @cached_property
+    def compiled(self) -> Any:
+        """The Numba function of numbers that Python can call."""
+        import numba
+
+        inlined = self.inlined
+        return numba.njit(lambda *arguments: inlined(*arguments))
+
+    @cached_property
     def strict(self) -> Any:
         """The same in strict IEEE arithmetic, which gives what the plain form gives."""
         return _inlined(self, set())

@@ -9,7 +9,17 @@ import numpy.typing as npt
 
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.source import Source
-from radiokit.measure.kernels import kernel, select
+from radiokit.physics.interface import (
+    INDEX_LIMITS,
+    conductor_complement_kernel,
+    conductor_kernel,
+    dielectric_complement_kernel,
+    dielectric_kernel,
+    schlick_complement_kernel,
+    schlick_kernel,
+    transmitted_cosine_kernel,
+)
+from radiokit.physics.metals import metal
 
 if TYPE_CHECKING:
     import sympy
@@ -20,12 +30,19 @@ __all__ = [
     "SCHLICK_SOURCE",
     "clip_index",
     "conductor",
+    "conductor_complement_kernel",
     "conductor_kernel",
     "conductor_symbolic",
     "dielectric",
+    "dielectric_complement_kernel",
+    "dielectric_kernel",
     "dielectric_symbolic",
+    "metal",
     "schlick",
+    "schlick_complement_kernel",
+    "schlick_kernel",
     "schlick_symbolic",
+    "transmitted_cosine_kernel",
 ]
 
 FloatArray = npt.NDArray[np.float64]
@@ -53,7 +70,6 @@ SCHLICK_SOURCE = Source(
 )
 
 _COSINE_TOLERANCE = 1e-6  # a cosine of two directions that are unit vectors to float32 accuracy
-_HUGE = 1e60  # an index beyond this, or below its inverse, reflects the same to the last bit
 
 
 def dielectric(cos_i: npt.ArrayLike, eta: npt.ArrayLike) -> Any:
@@ -83,17 +99,9 @@ def dielectric(cos_i: npt.ArrayLike, eta: npt.ArrayLike) -> Any:
     (0.04, 1.0)
     """
     c = np.clip(_number("cos_i", cos_i, -1.0, 1.0, _COSINE_TOLERANCE), -1.0, 1.0)
-    n = np.clip(_number("eta", eta, np.nextafter(0.0, 1.0), np.inf), 1 / _HUGE, _HUGE)
-    inside = c < 0.0
-    n_i, n_t, c = np.where(inside, n, 1.0), np.where(inside, 1.0, n), np.abs(c)
-    step = (n_t - n_i) * (n_t + n_i)
-    s = np.sqrt((1.0 - c) * (1.0 + c))
-    square = _transmitted(n_i, n_t, c)  # (n_t cos θt)²
-    g = np.sqrt(np.maximum(square, 0.0))
-    product = step * (n_t * c - n_i * s) * (n_t * c + n_i * s)  # (n_t² cos θi)² − (n_i n_t cos θt)²
-    r_s, r_p = _amplitude(n_i * c, g, step), _amplitude(n_t * n_t * c, n_i * g, product)
-    value = np.where(square < 0.0, 1.0, np.minimum(0.5 * (r_s * r_s + r_p * r_p), 1.0))
-    return np.where(step == 0.0, 0.0, value)[()]
+    n = np.clip(_number("eta", eta, np.nextafter(0.0, 1.0), np.inf), *INDEX_LIMITS)
+    with np.errstate(all="ignore"):
+        return dielectric_kernel(c, n)[()]
 
 
 def conductor(cos_i: npt.ArrayLike, eta: npt.ArrayLike, k: npt.ArrayLike) -> Any:
@@ -126,40 +134,13 @@ def conductor(cos_i: npt.ArrayLike, eta: npt.ArrayLike, k: npt.ArrayLike) -> Any
     """
     c = np.minimum(_number("cos_i", cos_i, 0.0, 1.0, _COSINE_TOLERANCE), 1.0)
     n, k = _number("eta", eta, np.nextafter(0.0, 1.0), np.inf), _number("k", k, 0.0, np.inf)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(all="ignore"):
         return conductor_kernel(c, *clip_index(n, k))[()]
 
 
 def clip_index(eta: Any, k: Any) -> tuple[Any, Any]:
     """Return the index in a range beyond which nothing changes: what ``conductor_kernel`` takes."""
-    return np.clip(eta, 1 / _HUGE, _HUGE), np.minimum(k, _HUGE)
-
-
-@kernel
-def _transmitted(n_i: Any, n_t: Any, c: Any) -> Any:
-    """Return n_t² − n_i² sin²θ, from the sine near the normal and from the cosine elsewhere."""
-    sine, cosine = n_i * np.sqrt((1.0 - c) * (1.0 + c)), n_i * c
-    return select(c > 0.75, (n_t - sine) * (n_t + sine), (n_t - n_i) * (n_t + n_i) + cosine * cosine)
-
-
-@kernel
-def conductor_kernel(c: Any, n: Any, k: Any) -> Any:
-    """Return what ``conductor`` does, for a cosine in [0, 1] and an index from ``clip_index``."""
-    sin2 = (1.0 - c) * (1.0 + c)
-    # q² = t + 2iηk; the larger of a and b comes from the sum that does not cancel, the other from ab = ηk.
-    t, nk = _transmitted(1.0, n, c) - k * k, n * k
-    larger = np.sqrt(0.5 * (np.sqrt(t * t + 4.0 * (nk * nk)) + abs(t)))
-    smaller = nk / select(larger > 0.0, larger, 1.0)
-    a, b = select(t >= 0.0, larger, smaller), select(t >= 0.0, smaller, larger)
-    contrast = ((n - 1.0) * (n - 1.0) + k * k) * ((n + 1.0) * (n + 1.0) + k * k)
-    ac, bc2 = a * c, (b * c) * (b * c)
-    s_sum = (a + c) * (a + c) + b * b
-    p_sum = (ac + sin2) * (ac + sin2) + bc2
-    s_loss, p_loss = 4.0 * ac / s_sum, 4.0 * ac * sin2 / p_sum  # the complements of the two quotients
-    r_s = select(s_loss < 0.5, 1.0 - s_loss, contrast / s_sum / s_sum)
-    ratio = select(p_loss < 0.5, 1.0 - p_loss, ((ac - sin2) * (ac - sin2) + bc2) / p_sum)
-    value = 0.5 * r_s * (1.0 + ratio)
-    return select(contrast == 0.0, 0.0, select(value < 1.0, value, 1.0))
+    return np.clip(eta, *INDEX_LIMITS), np.minimum(k, INDEX_LIMITS[1])
 
 
 def schlick(cos_i: npt.ArrayLike, f0: npt.ArrayLike) -> Any:
@@ -184,7 +165,7 @@ def schlick(cos_i: npt.ArrayLike, f0: npt.ArrayLike) -> Any:
     """
     c = np.minimum(_number("cos_i", cos_i, 0.0, 1.0, _COSINE_TOLERANCE), 1.0)
     f0 = _number("f0", f0, 0.0, 1.0)
-    return np.asarray(f0 + (1.0 - f0) * (1.0 - c) ** 5)[()]
+    return schlick_kernel(c, f0)[()]
 
 
 def dielectric_symbolic(cos_i: sympy.Expr, eta: sympy.Expr) -> sympy.Expr:
@@ -210,14 +191,6 @@ def conductor_symbolic(cos_i: sympy.Expr, eta: sympy.Expr, k: sympy.Expr) -> sym
 def schlick_symbolic(cos_i: sympy.Expr, f0: sympy.Expr) -> sympy.Expr:
     """Return Schlick's approximation as SymPy."""
     return f0 + (1 - f0) * (1 - cos_i) ** 5
-
-
-def _amplitude(a: FloatArray, b: FloatArray, squares: FloatArray) -> FloatArray:
-    """Return |a − b| / (a + b) for a, b ≥ 0, from a² − b² = ``squares`` where the difference would cancel."""
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        total = a + b
-        loss = 2.0 * np.minimum(a, b) / total
-        return np.where(loss < 0.5, 1.0 - loss, np.abs(squares) / total / total)
 
 
 def _number(name: str, value: npt.ArrayLike, low: float, high: float, tolerance: float = 0.0) -> FloatArray:
