@@ -48,7 +48,12 @@ class Claims:
 
 @dataclass(frozen=True)
 class DeltaLobe:
-    """Scattering into a single direction: ``wi`` (N, 3) and ``weight`` (N,), the share of the flux."""
+    """Scattering into a single direction: ``wi`` (N, 3) and ``weight`` (N,), the share of the flux.
+
+    Of the flux that arrives from ``wi`` this share leaves towards ``wo``, and the same share the other way
+    round. Radiance is multiplied by ``weight n(wo)² / n(wi)²``, with n(w) the index on w's side: that is
+    f |cos θi| / pdf of a sample that always goes there.
+    """
 
     wi: FloatArray
     weight: FloatArray
