@@ -1,4 +1,4 @@
-"""Supremum: the largest directional albedo over one side of a surface, by a scan of stated step and refinement."""
+"""Supremum: the largest directional albedo on one side, by a scan of stated step and refinement."""
 
 from __future__ import annotations
 
@@ -98,8 +98,8 @@ def scan_supremum(
         )
         theta, phi = np.concatenate([theta, grid_t.ravel()]), np.concatenate([phi, grid_p.ravel()])
 
-    found = [_aim(piece, theta, phi, rich) for piece in pieces]
-    aims, evaluations = tuple(aim for aim, _ in found), sum(spent for _, spent in found)
+    aimed = [_aim(piece, theta, phi, rich) for piece in pieces]
+    aims, evaluations = tuple(aim for aim, _ in aimed), sum(spent for _, spent in aimed)
     w = polar(np.cos(theta), phi)
     one = _scan(pieces, w, aims, 1.0, fine)
     two = _scan(pieces, w, aims, 1.3, coarse) if coarse else one

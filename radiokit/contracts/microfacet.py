@@ -16,7 +16,7 @@ FloatArray = npt.NDArray[np.float64]
 class Microfacets(Protocol):
     """The facets of a rough surface: how many face each way, and how they hide one another.
 
-    ``BSDF.microfacets`` returns one, or None. Directions are unit vectors (N, 3); ``h``, a facet's normal, and
+    ``BSDF.microfacets`` returns one, or None. Directions are unit vectors (N, 3); a facet's normal ``h`` and
     the macroscopic normal z point to the same side, and the facet is turned to ``w`` where w·h > 0.
     """
 

@@ -1,0 +1,285 @@
+"""Microfacet: the facets of a rough surface cover it exactly once, from wherever it is seen."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from radiokit.checks.probes import pairs, polar
+from radiokit.contracts.microfacet import FloatArray, Microfacets
+from radiokit.facts.directions import dot, half_vector
+from radiokit.facts.errors import NonFiniteError
+from radiokit.facts.estimate import Estimate
+from radiokit.facts.source import Source
+from radiokit.facts.verdict import Evidence, Outcome, Verdict, Witness
+from radiokit.measure.lattice import kronecker
+from radiokit.measure.quadrature import box, hemisphere
+
+__all__ = ["SOURCE", "microfacet", "projected_area", "white_furnace"]
+
+SOURCE = Source(
+    authors="Heitz",
+    year=2014,
+    title="Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs. "
+    "Journal of Computer Graphics Techniques 3(2)",
+    equation="the normalisation of D, the visible projected area, and the weak white furnace test",
+)
+
+CLAIM = "∫ D cosθ dω = 1, ∫ G₁ (wo·h)⁺ D dω = cosθo, ∫ G₁ D / (4 cosθo) dωi = 1, 0 ≤ G₂ ≤ G₁ ≤ 1"
+
+ANGLES_DEG = (0.0, 30.0, 60.0, 80.0, 89.0)
+AZIMUTHS = (0.3, 0.3 + np.pi / 2)
+
+TOLERANCE = 1e-7
+"""How far from 1 an integral may lie."""
+
+COARSE = 1e-4
+"""The largest error with which an integral still tells anything."""
+
+BUDGET = 200_000
+"""Evaluations that one integral may cost."""
+
+ROUNDING = 1e-12
+"""How far beyond its limit a share may lie."""
+
+PAIRS = 1 << 13
+
+
+def microfacet(facets: Microfacets, *, tolerance: float = TOLERANCE) -> Verdict:
+    """Judge whether facets make up a surface: a distribution D with its masking G₁ and shadowing G₂.
+
+    Seen from above, the facets cover the surface once. Seen from any ``wo``, those that are seen cover its
+    projected area. A surface whose facets reflect everything, and cast no shadows, therefore scatters all
+    light once, some of it below the horizon. A share is in [0, 1], what is seen from both sides is at most
+    what is seen from one, and the two sides may be exchanged.
+
+    Parameters
+    ----------
+    facets : Microfacets
+    tolerance : float
+        How far from 1 an integral may lie.
+    """
+    start = time.perf_counter()
+    counted = _Counted(facets)
+    details: dict[str, Any] = {"tolerance": tolerance, "rows": []}
+    common: dict[str, Any] = {"check": "microfacet", "claim": CLAIM, "details": details}
+
+    def verdict(outcome: Outcome, evidence: Evidence, message: str, **more: Any) -> Verdict:
+        seconds = time.perf_counter() - start
+        return Verdict(
+            outcome=outcome,
+            evidence=evidence,
+            message=message,
+            evaluations=counted.evaluations,
+            seconds=seconds,
+            **common,
+            **more,
+        )
+
+    width = _width(counted)
+    details["width_rad"] = width
+    broken = _shares(counted, width)
+    if broken is not None:
+        return verdict(Outcome.VIOLATED, Evidence.REFUTED, broken[0], witness=broken[1])
+    worst, unsure = 0.0, ""
+    try:
+        for name, wo, estimate in _integrals(counted, width):
+            error = float(estimate.error)
+            gap = abs(float(estimate.value) - 1)
+            theta = float(np.rad2deg(np.arctan2(np.hypot(wo[0], wo[1]), wo[2])))
+            details["rows"].append(
+                {"law": name, "theta_deg": theta, "value": float(estimate.value), "error": error}
+            )
+            worst = max(worst, gap)
+            if gap > error + tolerance:
+                place = "" if name == COVER else f" at θo = {theta:.4g}°"
+                return verdict(
+                    Outcome.VIOLATED,
+                    Evidence.REFUTED,
+                    f"{name} is {float(estimate.value):.8g} ± {error:.1g}{place}, not 1",
+                    witness=Witness({"wo": wo.tolist()}, {name: float(estimate.value), "±": error}),
+                    estimate=estimate,
+                    limit=1.0,
+                )
+            if error > COARSE:
+                unsure = unsure or f"{name} is known only to ± {error:.1g} at θo = {theta:.4g}°"
+    except NonFiniteError as error_found:
+        return verdict(Outcome.INCONCLUSIVE, Evidence.MEASURED, f"no integral: {error_found}")
+    if unsure:
+        return verdict(Outcome.INCONCLUSIVE, Evidence.BOUNDED, unsure)
+    count = len(details["rows"])
+    return verdict(
+        Outcome.HOLDS,
+        Evidence.BOUNDED,
+        f"{count} integrals are 1 within {worst:.1g}; no share is above its limit",
+    )
+
+
+COVER = "∫ D cosθ dω"
+AREA = "∫ G₁ (wo·h)⁺ D dω / cosθo"
+FURNACE = "∫ G₁ D / (4 cosθo) dωi"
+
+
+def _integrals(facets: Microfacets, width: float) -> Iterator[tuple[str, FloatArray, Estimate]]:
+    up = np.array([0.0, 0.0, 1.0])
+    yield COVER, up, _over_facets(lambda h: facets.density(h) * h[:, 2], up, width)
+    for theta in ANGLES_DEG:
+        for phi in AZIMUTHS if theta else AZIMUTHS[:1]:
+            wo = polar(np.cos(np.deg2rad([theta])), [phi])[0]
+            yield AREA, wo, projected_area(facets, wo, width=width)
+            yield FURNACE, wo, white_furnace(facets, wo, width=width)
+
+
+def projected_area(facets: Microfacets, wo: FloatArray, *, width: float) -> Estimate:
+    """Return ∫ G₁(wo, h) (wo·h)⁺ D(h) dω / cosθo over the facets: 1, the area seen from ``wo`` (3,)."""
+    return _over_facets(lambda h: _seen(facets, wo, h), wo, width)
+
+
+def white_furnace(facets: Microfacets, wo: FloatArray, *, width: float) -> Estimate:
+    """Return ∫ G₁(wo, h) D(h) / (4 cosθo) dωi over the sphere of wi: 1, for mirrors that cast no shadows.
+
+    Above the horizon it is integrated over wi itself; below it, where a lobe is cut off by h·z = 0, over h.
+    """
+
+    def reflected(wi: FloatArray) -> FloatArray:
+        held = np.broadcast_to(wo, wi.shape)
+        h = half_vector(wi, held)
+        return facets.density(h) * facets.masking(held, h) / (4 * wo[2])
+
+    above = hemisphere(reflected, wo=wo, width=width, rtol=1e-8, max_evaluations=BUDGET)
+    below = _over_facets(lambda h: _seen(facets, wo, h), wo, width, below=True)
+    return Estimate(
+        above.value + below.value,
+        above.error + below.error,
+        "truncation",
+        above.evaluations + below.evaluations,
+        above.seconds + below.seconds,
+        method=above.method,
+        converged=above.converged and below.converged,
+    )
+
+
+def _seen(facets: Microfacets, wo: FloatArray, h: FloatArray) -> FloatArray:
+    held = np.broadcast_to(wo, h.shape)
+    return facets.density(h) * facets.masking(held, h) * np.maximum(dot(held, h), 0.0) / wo[2]
+
+
+def _over_facets(
+    g: Callable[[FloatArray], FloatArray], wo: FloatArray, width: float, *, below: bool = False
+) -> Estimate:
+    """Integrate over the facets that are turned to ``wo``, or those of them that mirror it downwards.
+
+    In slope coordinates, with cosφ = sinh(y) cotθo, facets are turned away beyond the slope −1/sinh(y) where
+    y < 0, and mirror downwards beyond e^y: neither limit leaves a kink inside. The polar angle runs as a
+    hyperbolic sine of the lobe's width, and the azimuth is cut at y = 0.
+    """
+    cos_o, sin_o = float(wo[2]), float(np.hypot(wo[0], wo[1]))
+    tangent = sin_o / cos_o
+    flat = tangent < 1e-6
+    top = float(np.arcsinh(tangent))
+    c, d = (1.0, 0.0) if sin_o == 0 else (wo[0] / sin_o, wo[1] / sin_o)
+
+    def square(points: FloatArray) -> Any:
+        total: Any = 0.0
+        for start in (0.0, np.pi / 2):
+            angle = start + np.pi / 2 * points[:, 1]
+            y = np.zeros_like(angle) if flat else top * np.cos(angle)
+            if flat:
+                cos_phi, sin_phi, turn = np.cos(angle), np.sin(angle), np.ones_like(angle)
+            else:
+                low, high = top * np.sin(angle / 2) ** 2, top * np.cos(angle / 2) ** 2
+                root = 2 * np.sqrt(np.sinh(low) * np.cosh(high) * np.sinh(high) * np.cosh(low))
+                cos_phi, sin_phi = np.sinh(y) / tangent, root / tangent
+                turn = top * np.cosh(y) * np.sin(angle) / np.where(root > 0, root, 1.0)
+            first = np.arctan(np.exp(y)) if below else np.zeros_like(y)
+            last = np.arctan2(1.0, np.sinh(np.maximum(-y, 0.0)))
+            a, b = np.arcsinh(first / width), np.arcsinh(last / width)
+            t = a + points[:, 0] * (b - a)
+            theta = width * np.sinh(t)
+            weight = np.sin(theta) * width * np.cosh(t) * (b - a) * turn * (np.pi / 2)
+            for side in (1.0, -1.0):
+                along, across = np.sin(theta) * cos_phi, side * np.sin(theta) * sin_phi
+                h = np.stack([c * along - d * across, d * along + c * across, np.cos(theta)], axis=-1)
+                total = total + weight * g(h)
+        return total
+
+    return box(square, (0.0, 0.0), (1.0, 1.0), rtol=1e-8, atol=1e-10, max_evaluations=BUDGET // 4)
+
+
+def _width(facets: Microfacets) -> float:
+    """Return the median polar angle of the facets [rad]: about α of a narrow distribution."""
+    theta = np.geomspace(1e-6, np.pi / 2, 400)
+    phi = (np.arange(16) + 0.5) * (np.pi / 8)
+    t, p = np.meshgrid(theta, phi, indexing="ij")
+    h = np.stack([np.sin(t) * np.cos(p), np.sin(t) * np.sin(p), np.cos(t)], axis=-1)
+    density = np.nan_to_num(facets.density(h.reshape(-1, 3))).reshape(t.shape)
+    mass = np.cumsum(np.mean(density, axis=1) * np.sin(theta) * np.cos(theta) * theta)
+    if not mass[-1] > 0:
+        return 1.0
+    return float(theta[np.searchsorted(mass, mass[-1] / 2)])
+
+
+def _shares(facets: Microfacets, width: float) -> tuple[str, Witness] | None:
+    """Look for a facet at which D is negative or a share is beyond its limit."""
+    wi, wo = pairs(PAIRS)
+    u = kronecker(PAIRS, 2)
+    theta = np.where(
+        np.arange(PAIRS) % 2 == 0, np.arctan(width * np.sinh(np.arcsinh(20.0) * u[:, 0])), np.arccos(u[:, 0])
+    )
+    h = np.stack(
+        [
+            np.sin(theta) * np.cos(2 * np.pi * u[:, 1]),
+            np.sin(theta) * np.sin(2 * np.pi * u[:, 1]),
+            np.cos(theta),
+        ],
+        axis=-1,
+    )
+    h = np.where((np.arange(PAIRS) % 4 == 3)[:, None], half_vector(wi, wo), h)
+    turned = (dot(wi, h) > 0) & (dot(wo, h) > 0) & (h[:, 2] > 0)
+    wi, wo, h = wi[turned], wo[turned], h[turned]
+    density = facets.density(h)
+    one, other = facets.masking(wi, h), facets.masking(wo, h)
+    both, swapped = facets.shadowing(wi, wo, h), facets.shadowing(wo, wi, h)
+    low = np.minimum(one, other)
+    laws: tuple[tuple[str, Any, dict[str, FloatArray]], ...] = (
+        ("D is negative or not finite", ~((density >= 0) & np.isfinite(density)), {"D": density}),
+        ("G₁ is not in [0, 1]", ~((one >= 0) & (one <= 1 + ROUNDING)), {"G₁(wi, h)": one}),
+        ("G₂ is negative or not finite", ~((both >= 0) & np.isfinite(both)), {"G₂": both}),
+        (
+            "G₂ is above the smaller G₁",
+            both > low * (1 + 1e-9) + ROUNDING,
+            {"G₂": both, "G₁(wi, h)": one, "G₁(wo, h)": other},
+        ),
+        (
+            "G₂ is not the same when wi and wo are exchanged",
+            np.abs(both - swapped) > 1e-9 * both + ROUNDING,
+            {"G₂(wi, wo, h)": both, "G₂(wo, wi, h)": swapped},
+        ),
+    )
+    for message, bad, values in laws:
+        if np.any(bad):
+            row = int(np.argmax(bad))
+            at = {"wi": wi[row].tolist(), "wo": wo[row].tolist(), "h": h[row].tolist()}
+            found = f"{message}, at {int(np.sum(bad))} of {len(h)} places"
+            return found, Witness(at, {name: float(value[row]) for name, value in values.items()})
+    return None
+
+
+class _Counted:
+    """Facets that count how many values of D are asked of them."""
+
+    def __init__(self, facets: Microfacets) -> None:
+        self.facets, self.evaluations = facets, 0
+
+    def density(self, h: FloatArray) -> FloatArray:
+        self.evaluations += len(h)
+        return np.asarray(self.facets.density(h), dtype=float)
+
+    def masking(self, w: FloatArray, h: FloatArray) -> FloatArray:
+        return np.asarray(self.facets.masking(w, h), dtype=float)
+
+    def shadowing(self, wi: FloatArray, wo: FloatArray, h: FloatArray) -> FloatArray:
+        return np.asarray(self.facets.shadowing(wi, wo, h), dtype=float)
