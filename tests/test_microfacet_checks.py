@@ -15,7 +15,9 @@ from radiokit.checks.judge import check
 from radiokit.checks.microfacet import COVER, microfacet, projected_area, white_furnace
 from radiokit.checks.probes import polar
 from radiokit.contracts.microfacet import Microfacets
+from radiokit.facts.directions import half_vector
 from radiokit.facts.verdict import Outcome
+from radiokit.measure.quadrature import hemisphere
 
 
 def tan2(w, ax, ay):
@@ -168,13 +170,20 @@ def test_an_integral_that_is_not_known_is_no_pass():
     assert not microfacet(Facets(spiked, GOOD.masking, GOOD.shadowing)).ok
 
 
-def test_the_two_integrals_are_known_in_closed_form_without_masking():
-    """With G₁ = 1 and a flat slope distribution at normal incidence, both are ∫ D cosθ dω."""
-    up = np.array([0.0, 0.0, 1.0])
-    bare = Facets(GOOD.density, lambda w, h: np.ones(len(h)), GOOD.shadowing)
-    for law in (projected_area, white_furnace):
-        found = law(bare, up, width=0.3)
-        assert abs(found.value - 1) <= found.error <= 1e-8
+@pytest.mark.parametrize("theta", [0.0, 50.0, 89.0])
+def test_the_white_furnace_is_cut_at_the_horizon_of_wi(theta):
+    """What leaves above the horizon, integrated over h, is what is integrated over wi itself."""
+    wo = polar(np.cos(np.deg2rad([theta])), [2.0])[0]
+
+    def reflected(wi):
+        held = np.broadcast_to(wo, wi.shape)
+        h = half_vector(wi, held)
+        return GOOD.density(h) * GOOD.masking(held, h) / (4 * wo[2])
+
+    above, below = white_furnace(GOOD, wo, width=0.3)
+    exact = hemisphere(reflected, wo=wo, width=0.3, rtol=1e-9)
+    assert abs(above.value - exact.value) <= above.error + exact.error <= 1e-8
+    assert below.value > 0
 
 
 @pytest.mark.parametrize("alpha", [0.05, 1.0])
@@ -185,9 +194,10 @@ def test_without_masking_more_is_seen_than_there_is(alpha):
     for theta in (20.0, 75.0, 89.9):
         wo = polar(np.cos(np.deg2rad([theta])), [2.0])
         exact = 1 + ggx_lambda(alpha, alpha)(wo)[0]
-        for law in (projected_area, white_furnace):
-            found = law(bare, wo[0], width=alpha)
-            assert abs(found.value - exact) <= found.error <= 1e-6 * exact
+        area = projected_area(bare, wo[0], width=alpha)
+        assert abs(area.value - exact) <= area.error <= 1e-6 * exact
+        above, below = white_furnace(bare, wo[0], width=alpha)
+        assert abs(above.value + below.value - exact) <= above.error + below.error <= 1e-6 * exact
 
 
 class Rough(Lambert):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from radiokit.facts.estimate import Estimate
 from radiokit.facts.source import Source
 from radiokit.facts.verdict import Evidence, Outcome, Verdict, Witness
 from radiokit.measure.lattice import kronecker
-from radiokit.measure.quadrature import box, hemisphere
+from radiokit.measure.quadrature import box
 
 __all__ = ["SOURCE", "microfacet", "projected_area", "white_furnace"]
 
@@ -39,7 +40,7 @@ TOLERANCE = 1e-7
 COARSE = 1e-4
 """The largest error with which an integral still tells anything."""
 
-BUDGET = 200_000
+BUDGET = 1_500_000
 """Evaluations that one integral may cost."""
 
 ROUNDING = 1e-12
@@ -130,7 +131,16 @@ def _integrals(facets: Microfacets, width: float) -> Iterator[tuple[str, FloatAr
         for phi in AZIMUTHS if theta else AZIMUTHS[:1]:
             wo = polar(np.cos(np.deg2rad([theta])), [phi])[0]
             yield AREA, wo, projected_area(facets, wo, width=width)
-            yield FURNACE, wo, white_furnace(facets, wo, width=width)
+            above, below = white_furnace(facets, wo, width=width)
+            both = replace(
+                above,
+                value=above.value + below.value,
+                error=above.error + below.error,
+                evaluations=above.evaluations + below.evaluations,
+                seconds=above.seconds + below.seconds,
+                converged=above.converged and below.converged,
+            )
+            yield FURNACE, wo, both
 
 
 def projected_area(facets: Microfacets, wo: FloatArray, *, width: float) -> Estimate:
@@ -138,28 +148,16 @@ def projected_area(facets: Microfacets, wo: FloatArray, *, width: float) -> Esti
     return _over_facets(lambda h: _seen(facets, wo, h), wo, width)
 
 
-def white_furnace(facets: Microfacets, wo: FloatArray, *, width: float) -> Estimate:
-    """Return ∫ G₁(wo, h) D(h) / (4 cosθo) dωi over the sphere of wi: 1, for mirrors that cast no shadows.
+def white_furnace(facets: Microfacets, wo: FloatArray, *, width: float) -> tuple[Estimate, Estimate]:
+    """Return ∫ G₁(wo, h) D(h) / (4 cosθo) dωi over the wi above and below the horizon, for wo (3,).
 
-    Above the horizon it is integrated over wi itself; below it, where a lobe is cut off by h·z = 0, over h.
+    Together they are 1: mirrors that cast no shadows lose no light, but send some of it down. With
+    dωi = 4 (wo·h) dω each is an integral over the facets, cut where they mirror ``wo`` into the horizon.
     """
-
-    def reflected(wi: FloatArray) -> FloatArray:
-        held = np.broadcast_to(wo, wi.shape)
-        h = half_vector(wi, held)
-        return facets.density(h) * facets.masking(held, h) / (4 * wo[2])
-
-    above = hemisphere(reflected, wo=wo, width=width, rtol=1e-8, max_evaluations=BUDGET)
-    below = _over_facets(lambda h: _seen(facets, wo, h), wo, width, below=True)
-    return Estimate(
-        above.value + below.value,
-        above.error + below.error,
-        "truncation",
-        above.evaluations + below.evaluations,
-        above.seconds + below.seconds,
-        method=above.method,
-        converged=above.converged and below.converged,
+    above, below = (
+        _over_facets(lambda h: _seen(facets, wo, h), wo, width, below=side) for side in (False, True)
     )
+    return above, below
 
 
 def _seen(facets: Microfacets, wo: FloatArray, h: FloatArray) -> FloatArray:
@@ -168,45 +166,76 @@ def _seen(facets: Microfacets, wo: FloatArray, h: FloatArray) -> FloatArray:
 
 
 def _over_facets(
-    g: Callable[[FloatArray], FloatArray], wo: FloatArray, width: float, *, below: bool = False
+    g: Callable[[FloatArray], FloatArray], wo: FloatArray, width: float, *, below: bool | None = None
 ) -> Estimate:
-    """Integrate over the facets that are turned to ``wo``, or those of them that mirror it downwards.
+    """Integrate over the facets turned to ``wo``: all, or those that mirror it above or below the horizon.
 
     In slope coordinates, with cosφ = sinh(y) cotθo, facets are turned away beyond the slope −1/sinh(y) where
-    y < 0, and mirror downwards beyond e^y: neither limit leaves a kink inside. The polar angle runs as a
-    hyperbolic sine of the lobe's width, and the azimuth is cut at y = 0.
+    y < 0, and mirror downwards beyond e^y. Where y > 0 the facet on the other side of the normal is turned
+    away beyond 1/sinh(y), which a groove notices. The pieces are cut there and at y = 0, so that no kink is
+    inside; the polar angle runs over each as a hyperbolic sine of the lobe's width.
     """
     cos_o, sin_o = float(wo[2]), float(np.hypot(wo[0], wo[1]))
     tangent = sin_o / cos_o
     flat = tangent < 1e-6
-    top = float(np.arcsinh(tangent))
+    top = 0.0 if flat else float(np.arcsinh(tangent))
     c, d = (1.0, 0.0) if sin_o == 0 else (wo[0] / sin_o, wo[1] / sin_o)
 
-    def square(points: FloatArray) -> Any:
+    def piece(points: FloatArray, ends: tuple[float, float], limits: tuple[int, int]) -> Any:
+        angle = ends[0] + (ends[1] - ends[0]) * points[:, 1]
+        y = top * np.cos(angle)
+        if flat:
+            cos_phi, sin_phi, turn = np.cos(angle), np.sin(angle), np.ones_like(angle)
+        else:
+            low, high = top * np.sin(angle / 2) ** 2, top * np.cos(angle / 2) ** 2
+            root = 2 * np.sqrt(np.sinh(low) * np.cosh(high) * np.sinh(high) * np.cosh(low))
+            cos_phi, sin_phi = np.sinh(y) / tangent, root / tangent
+            turn = top * np.cosh(y) * np.sin(angle) / np.where(root > 0, root, 1.0)
+        borders = [
+            np.zeros_like(y),
+            np.arctan(np.exp(y)),
+            np.arctan2(1.0, np.sinh(np.abs(y))),
+            np.full_like(y, np.pi / 2),
+        ]
+        a, b = (np.arcsinh(borders[limit] / width) for limit in limits)
+        t = a + points[:, 0] * (b - a)
+        theta = width * np.sinh(t)
+        weight = np.sin(theta) * width * np.cosh(t) * (b - a) * turn * (ends[1] - ends[0])
         total: Any = 0.0
-        for start in (0.0, np.pi / 2):
-            angle = start + np.pi / 2 * points[:, 1]
-            y = np.zeros_like(angle) if flat else top * np.cos(angle)
-            if flat:
-                cos_phi, sin_phi, turn = np.cos(angle), np.sin(angle), np.ones_like(angle)
-            else:
-                low, high = top * np.sin(angle / 2) ** 2, top * np.cos(angle / 2) ** 2
-                root = 2 * np.sqrt(np.sinh(low) * np.cosh(high) * np.sinh(high) * np.cosh(low))
-                cos_phi, sin_phi = np.sinh(y) / tangent, root / tangent
-                turn = top * np.cosh(y) * np.sin(angle) / np.where(root > 0, root, 1.0)
-            first = np.arctan(np.exp(y)) if below else np.zeros_like(y)
-            last = np.arctan2(1.0, np.sinh(np.maximum(-y, 0.0)))
-            a, b = np.arcsinh(first / width), np.arcsinh(last / width)
-            t = a + points[:, 0] * (b - a)
-            theta = width * np.sinh(t)
-            weight = np.sin(theta) * width * np.cosh(t) * (b - a) * turn * (np.pi / 2)
-            for side in (1.0, -1.0):
-                along, across = np.sin(theta) * cos_phi, side * np.sin(theta) * sin_phi
-                h = np.stack([c * along - d * across, d * along + c * across, np.cos(theta)], axis=-1)
-                total = total + weight * g(h)
+        for side in (1.0, -1.0):
+            along, across = np.sin(theta) * cos_phi, side * np.sin(theta) * sin_phi
+            h = np.stack([c * along - d * across, d * along + c * across, np.cos(theta)], axis=-1)
+            total = total + weight * g(h)
         return total
 
-    return box(square, (0.0, 0.0), (1.0, 1.0), rtol=1e-8, atol=1e-10, max_evaluations=BUDGET // 4)
+    pieces = _pieces(top, below)
+
+    def square(points: FloatArray) -> Any:
+        return sum(piece(points, ends, limits) for ends, limits in pieces)
+
+    cost = 2 * len(pieces)
+    found = box(square, (0.0, 0.0), (1.0, 1.0), rtol=1e-8, atol=1e-10, max_evaluations=BUDGET // cost)
+    return replace(found, evaluations=cost * found.evaluations)
+
+
+START, HORIZON, HIDDEN, END = range(4)
+
+
+def _pieces(top: float, below: bool | None) -> list[tuple[tuple[float, float], tuple[int, int]]]:
+    """Return the pieces as intervals of the angle behind y, each between two limits of the polar angle."""
+    quarter = np.pi / 2
+    level = np.log(3) / 2  # above this y the other facet is hidden before the horizon is reached
+    cut = float(np.arccos(level / top)) if top > level else 0.0
+    away, near, far = (quarter, np.pi), (cut, quarter), (0.0, cut)
+    if below is None:
+        found = [((0.0, quarter), (START, HIDDEN)), ((0.0, quarter), (HIDDEN, END)), (away, (START, HIDDEN))]
+    elif below:
+        found = [(near, (HORIZON, HIDDEN)), (near, (HIDDEN, END)), (far, (HORIZON, END))]
+        found.append((away, (HORIZON, HIDDEN)))
+    else:
+        found = [(near, (START, HORIZON)), (far, (START, HIDDEN)), (far, (HIDDEN, HORIZON))]
+        found.append((away, (START, HORIZON)))
+    return [(ends, limits) for ends, limits in found if ends[1] > ends[0]]
 
 
 def _width(facets: Microfacets) -> float:
