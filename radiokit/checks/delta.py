@@ -16,6 +16,9 @@ __all__ = ["in_lobe", "lobe_means", "way_back"]
 SAME = 1e-9
 """Distance of two unit vectors that are called the same."""
 
+RARE = 20.0
+"""What is expected fewer times than this may never be seen, but for a chance of exp(−20)."""
+
 
 def way_back(f: BSDF, *, count: int = 1 << 12, tolerance: float) -> tuple[int, tuple[str, Witness] | None]:
     """Follow each delta lobe back: from its direction a lobe must return to ``wo`` with the same share.
@@ -81,6 +84,7 @@ def lobe_means(f: BSDF, wi: FloatArray, weight: FloatArray, wo: FloatArray) -> l
     rows: list[dict[str, Any]] = []
     places: list[FloatArray] = []
     lobes = f.delta_lobes(wo[None, :])
+    weights = channels(weight)
     for lobe in lobes:
         if any(_distance(lobe.wi, place)[0] <= SAME for place in places):
             continue
@@ -89,8 +93,13 @@ def lobe_means(f: BSDF, wi: FloatArray, weight: FloatArray, wo: FloatArray) -> l
         share = sum((channels(other.weight)[0] for other in same), start=np.zeros(1))
         due = share * index_squared(f, wo) / index_squared(f, lobe.wi[0])
         here = _distance(wi, lobe.wi) <= SAME
-        brought = np.where(here[:, None], channels(weight), 0.0)
-        p = [bernstein_test(brought[:, k], due[k], 1e-9 * max(1.0, due[k])) for k in range(len(due))]
+        brought = np.where(here[:, None], weights, 0.0)
+        # A lobe that was hardly ever picked may bring as much, when it is, as any other sample brought.
+        unseen = RARE * weights.max(axis=0) / len(wi) if np.sum(here) < 5 * RARE else np.zeros(len(due))
+        p = [
+            bernstein_test(brought[:, k], due[k], 1e-9 * max(1.0, due[k]) + unseen[k])
+            for k in range(len(due))
+        ]
         rows.append(
             {
                 "wi": lobe.wi[0].tolist(),
