@@ -11,8 +11,9 @@ import pytest
 from scipy.special import erf
 
 from radiokit.bsdfs.lambert import Lambert
+from radiokit.checks.facets import projected_area, white_furnace
 from radiokit.checks.judge import check
-from radiokit.checks.microfacet import COVER, microfacet, projected_area, white_furnace
+from radiokit.checks.microfacet import COVER, microfacet
 from radiokit.checks.probes import polar
 from radiokit.contracts.microfacet import Microfacets
 from radiokit.facts.directions import half_vector

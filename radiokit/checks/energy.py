@@ -123,17 +123,20 @@ def energy(
 def _balances(f: BSDF, found: dict[str, Extremum], budget: int) -> dict[str, Any]:
     """Return the balance where most comes out, and at some angles on either side if the budget allows."""
     worst = max(found.values(), key=lambda item: item.estimate.value - item.estimate.error)
-    rows = {"at_supremum": _balance(f, worst.direction)}
+    most = min(BALANCE_EVALUATIONS, budget // 8)
+    rows = {"at_supremum": _balance(f, worst.direction, most)}
     if budget < 20 * BALANCE_EVALUATIONS:
         return rows
     phi = np.arctan2(worst.direction[1], worst.direction[0])
     places = polar(np.cos(np.deg2rad(BALANCE_DEG)), phi)
-    return rows | {"balance": [_balance(f, w) for below in (False, True) for w in flipped(places, below)]}
+    return rows | {
+        "balance": [_balance(f, w, most) for below in (False, True) for w in flipped(places, below)]
+    }
 
 
-def _balance(f: BSDF, wi: FloatArray) -> dict[str, Any]:
+def _balance(f: BSDF, wi: FloatArray, most: int) -> dict[str, Any]:
     """Return what becomes of light from ``wi``, as shares of the flux."""
-    tolerances: dict[str, Any] = {"rtol": 1e-6, "atol": 1e-9, "max_evaluations": BALANCE_EVALUATIONS // 2}
+    tolerances: dict[str, Any] = {"rtol": 1e-6, "atol": 1e-9, "max_evaluations": most // 2}
     back = share(f, wi, fixed="wi", side="reflected", **tolerances)
     through = share(f, wi, fixed="wi", side="transmitted", **tolerances)
     return {

@@ -16,7 +16,17 @@ from radiokit.facts.directions import refract
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.quadrature import hemisphere
 
-__all__ = ["Part", "delta_share", "flipped", "index_squared", "parts", "scattered", "share"]
+__all__ = [
+    "Part",
+    "brighter",
+    "delta_share",
+    "flipped",
+    "index_squared",
+    "mean_weight",
+    "parts",
+    "scattered",
+    "share",
+]
 
 LEAST_COSINE = 0.01
 """The aim at light that leaves along the surface: close to it, and above it."""
@@ -81,23 +91,22 @@ def index_squared(f: BSDF, w: FloatArray) -> npt.NDArray[np.float64]:
 
 
 def delta_share(
-    f: BSDF, w: FloatArray, *, fixed: Side, side: Literal["reflected", "transmitted"] | None = None
+    f: BSDF, w: FloatArray, side: Literal["reflected", "transmitted"] | None = None
 ) -> FloatArray:
-    """Return what the delta lobes add to ∫ f |cosθ| dω for fixed ``w`` (N, 3), as (N, K).
-
-    A lobe's weight is the share of the flux, the same both ways; for fixed wo the integral is of radiance,
-    which also takes the factor n(wo)² / n(wi)².
-    """
+    """Return the share of the flux of ``w`` (N, 3) that is in delta lobes, all or one side's, as (N, K)."""
     total = np.zeros((len(w), 1))
     for lobe in f.delta_lobes(w):
         weight = channels(lobe.weight)
         if side is not None:
             crosses = (lobe.wi[..., 2] < 0) != (w[..., 2] < 0)
             weight = weight * (crosses == (side == "transmitted"))[:, None]
-        if fixed == "wo" and f.transmissive:
-            weight = weight * (index_squared(f, w) / index_squared(f, lobe.wi))[:, None]
         total = total + weight
     return total
+
+
+def brighter(f: BSDF, wo: FloatArray) -> float:
+    """Return n(wo)² / n(wi)² for light that came through the surface: by how much its radiance has grown."""
+    return float(index_squared(f, wo) / index_squared(f, -wo))
 
 
 def share(
@@ -111,9 +120,10 @@ def share(
     atol: float = 0.0,
     max_evaluations: int = 4_000_000,
 ) -> Estimate:
-    """Return ∫ f |cosθ| dω over the hemisphere of ``w`` (3,) or over the other one, delta lobes included.
+    """Return the share of the flux of ``w`` (3,), on either side, that is reflected or transmitted.
 
-    For fixed wi it is the share of the flux that is reflected or transmitted. ``w`` may be on either side.
+    For fixed wi it is ∫ f |cosθo| dωo over the hemisphere of ``w`` or over the other one; for fixed wo the
+    same of f n(wi)² / n(wo)², which for a reciprocal f is the same number. Delta lobes are included.
     """
     below = bool(w[2] < 0)
     part = Part(f, fixed, below, through=side == "transmitted")
@@ -121,6 +131,7 @@ def share(
     if width is None and not part.through:
         width = f.lobe_width()
     integrand = part.integrand(up)
+    scale = 1 / brighter(f, w) if part.through and fixed == "wo" else 1.0
     found = hemisphere(
         integrand,
         wo=part.aim(up),
@@ -131,9 +142,9 @@ def share(
         smooth=f.smooth,
         max_evaluations=max_evaluations,
     )
-    delta = delta_share(f, w[None, :], fixed=fixed, side=side)[0]
-    total = found.value + (delta[0] if len(delta) == 1 else delta)
-    return replace(found, value=total, error=found.error + 4 * f.precision * np.abs(total))
+    delta = delta_share(f, w[None, :], side)[0]
+    total = scale * found.value + (delta[0] if len(delta) == 1 else delta)
+    return replace(found, value=total, error=scale * found.error + 4 * f.precision * np.abs(total))
 
 
 def scattered(
@@ -146,7 +157,7 @@ def scattered(
     atol: float = 0.0,
     max_evaluations: int = 4_000_000,
 ) -> Estimate:
-    """Return ∫ f |cosθ| dω over all directions to which f scatters, delta lobes included."""
+    """Return the share of the flux of ``w`` (3,) that is scattered anywhere, delta lobes included."""
     if not f.transmissive:
         return directional_albedo(
             f, w, fixed=fixed, width=widths[0], rtol=rtol, atol=atol, max_evaluations=max_evaluations
@@ -154,10 +165,26 @@ def scattered(
     tolerances: dict[str, Any] = {"rtol": rtol, "atol": atol / 2, "max_evaluations": max_evaluations // 2}
     one = share(f, w, fixed=fixed, side="reflected", width=widths[0], **tolerances)
     two = share(f, w, fixed=fixed, side="transmitted", width=widths[1], **tolerances)
+    return _sum(one, two)
+
+
+def mean_weight(f: BSDF, wo: FloatArray, *, rtol: float, max_evaluations: int) -> Estimate:
+    """Return ∫ f |cosθi| dωi and the delta lobes' part of it: the mean weight of a right sampler at ``wo``.
+
+    A weight is one of radiance: what comes through the surface is not a share of the flux but brighter.
+    """
+    if not f.transmissive:
+        return scattered(f, wo, fixed="wo", rtol=rtol, max_evaluations=max_evaluations)
+    tolerances: dict[str, Any] = {"rtol": rtol, "max_evaluations": max_evaluations // 2}
+    one = share(f, wo, fixed="wo", side="reflected", **tolerances)
+    return _sum(one, share(f, wo, fixed="wo", side="transmitted", **tolerances), brighter(f, wo))
+
+
+def _sum(one: Estimate, two: Estimate, scale: float = 1.0) -> Estimate:
     return replace(
         one,
-        value=one.value + two.value,
-        error=one.error + two.error,
+        value=one.value + scale * two.value,
+        error=one.error + scale * two.error,
         evaluations=one.evaluations + two.evaluations,
         seconds=one.seconds + two.seconds,
         converged=one.converged and two.converged,

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from radiokit.checks.delta import in_lobe, lobe_means
-from radiokit.checks.parts import Part, flipped, parts, scattered
+from radiokit.checks.parts import Part, flipped, mean_weight, parts
 from radiokit.checks.probes import channels, pairs, polar
 from radiokit.contracts.bsdf import BSDF, FloatArray
 from radiokit.facts.errors import NonFiniteError
@@ -190,7 +190,7 @@ def _distribution(
             f"the samples do not follow the pdf: chi-square p = {fit.p_value:.1e}",
             Witness(at, values),
         )
-    truth = scattered(f, wo, fixed="wo", rtol=1e-6, max_evaluations=len(pieces) * most)
+    truth = mean_weight(f, wo, rtol=1e-6, max_evaluations=len(pieces) * most)
     row["evaluations"] += truth.evaluations
     columns, exact = channels(weight), np.atleast_1d(truth.value)
     slack = np.broadcast_to(truth.error, exact.shape) + 1e-12

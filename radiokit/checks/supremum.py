@@ -210,7 +210,7 @@ def _scan(
     blocks = _blocks(len(w), 2 * n * n)
     found = []
     for block in blocks:
-        sums = delta_share(first.f, flipped(w[block], first.below), fixed=first.fixed)
+        sums = delta_share(first.f, flipped(w[block], first.below))
         for part, aim in zip(pieces, aims, strict=True):
             sums = sums + _integrals(part, w[block], aim[block], scale, n)
         found.append(sums.max(axis=1))
