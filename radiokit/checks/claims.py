@@ -17,7 +17,9 @@ CLAIM = "what is observed of the model equals what it claims"
 def claims(f: BSDF, report: Report) -> Verdict:
     """Compare a model's claims with the verdicts of its report, in both directions.
 
-    A model that claims to break a law must be seen to break it.
+    A model that claims to break a law must be seen to break it. What is found of reciprocity is "no" where
+    the law that was judged is broken; else "eta-scaled" where that was the scaled law, of a model that
+    transmits into another index, whether or not the plain one holds as well; else "yes".
     """
     said = f.claims
     if said is None:
@@ -29,11 +31,16 @@ def claims(f: BSDF, report: Report) -> Verdict:
             message="the model claims nothing",
         )
     energy = report["energy"]
-    wi, wo = pairs(256)
+    wi, wo = pairs(256, f)
     only_delta = bool(f.delta_lobes(wo)) and not np.any(f.evaluate(wi, wo))
     lossless = bool(energy.details.get("lossless")) and energy.outcome is Outcome.HOLDS
-    rows = {
-        "reciprocity": (said.reciprocity == "yes", report["reciprocity"].outcome),
+    turns = report["reciprocity"]
+    law = turns.details.get("law", "yes")
+    if said.reciprocity in (law, "no"):
+        rows = {"reciprocity": (said.reciprocity != "no", turns.outcome)}
+    else:  # the other law is claimed than the one that governs the model
+        rows = {"reciprocity": (True, Outcome.VIOLATED)}
+    rows |= {
         "conserves": (said.conserves, energy.outcome),
         "lossless": (said.lossless, Outcome.HOLDS if lossless else Outcome.VIOLATED),
         "delta": (said.delta, Outcome.HOLDS if only_delta else Outcome.VIOLATED),
@@ -43,12 +50,13 @@ def claims(f: BSDF, report: Report) -> Verdict:
     outcome = Outcome.HOLDS
     if wrong:
         outcome = Outcome.INCONCLUSIVE if len(unsure) == len(wrong) else Outcome.VIOLATED
-    text = {name: f"{name}: claimed {'yes' if claimed else 'no'}" for name, (claimed, _) in rows.items()}
-    message = "; ".join(f"{text[name]}, observed {rows[name][1]}" for name in wrong)
+    words = {name: "yes" if claimed else "no" for name, (claimed, _) in rows.items()}
+    words["reciprocity"] = said.reciprocity
+    message = "; ".join(f"{name}: claimed {words[name]}, observed {rows[name][1]}" for name in wrong)
+    if said.reciprocity not in (law, "no"):
+        message += f" (the law that governs it is {law}, and {turns.outcome})"
     if not wrong:
-        message = "as observed: " + ", ".join(
-            f"{name} {'yes' if claimed else 'no'}" for name, (claimed, _) in rows.items()
-        )
+        message = "as observed: " + ", ".join(f"{name} {word}" for name, word in words.items())
     refuted = outcome is Outcome.VIOLATED
     return Verdict(
         check="claims",

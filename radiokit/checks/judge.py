@@ -7,11 +7,12 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from radiokit.checks.energy import energy
+from radiokit.checks.microfacet import microfacet
 from radiokit.checks.probes import seconds_per_evaluation
 from radiokit.checks.reciprocity import reciprocity
 from radiokit.checks.sampling import ANGLES_DEG, sampling
 from radiokit.checks.values import values
-from radiokit.contracts.blackbox import as_bsdf
+from radiokit.contracts.blackbox import BlackBox, as_bsdf
 from radiokit.contracts.bsdf import BSDF
 from radiokit.facts.errors import ParameterError, UnknownNameError
 from radiokit.facts.report import Report
@@ -19,7 +20,7 @@ from radiokit.facts.verdict import TOLERANCE, Evidence, Outcome, Verdict
 
 __all__ = ["LAWS", "check"]
 
-LAWS = ("values", "reciprocity", "energy", "sampling")
+LAWS = ("values", "reciprocity", "energy", "sampling", "microfacet")
 
 _PLENTY = {"values": 1 << 16, "reciprocity": 1 << 17, "energy": 16_000_000, "sampling": 6 << 17}
 """Evaluations that each law may spend on a fast function."""
@@ -40,17 +41,19 @@ def check(
     tests: int = 1,
     progress: Callable[[int, int], None] | None = None,
 ) -> Report:
-    """Check a BSDF for finite values, reciprocity, energy conservation, and its sampler.
+    """Check a BSDF for finite values, reciprocity, energy conservation, its sampler, and its facets.
 
     Searches are deterministic, and the samples' seed derives from the model's name and parameters: the same
-    function gets the same report. A function without a sampler is not judged for one.
+    function gets the same report. A function without a sampler is not judged for one, nor a model without
+    ``microfacets`` for them.
 
     Parameters
     ----------
     f : BSDF or callable
-        A callable f(wi, wo) [sr⁻¹] is wrapped by ``as_bsdf``.
+        A callable f(wi, wo) [sr⁻¹] is wrapped by ``as_bsdf``; one through which light passes says so by its
+        attributes ``transmissive`` and ``eta``.
     laws : iterable of str
-        Which of ``values``, ``reciprocity``, ``energy``, ``sampling``.
+        Which of ``values``, ``reciprocity``, ``energy``, ``sampling``, ``microfacet``.
     tolerance : float
         How far beyond a limit a value may lie.
     seconds : float
@@ -85,6 +88,11 @@ def check(
     if not 0 <= tolerance < 1:
         raise ParameterError("tolerance", tolerance, "in [0, 1)")
     model = as_bsdf(f)
+    if not getattr(model, "has_sampler", True):
+        chosen = [law for law in chosen if law != "sampling"]
+    facets = model.microfacets()
+    if facets is None:
+        chosen = [law for law in chosen if law != "microfacet"]
     cost = seconds_per_evaluation(model)
     budget = dict(_PLENTY)
     notes = []
@@ -110,10 +118,15 @@ def check(
     if "energy" in chosen:
         step()
         verdicts.append(energy(model, tolerance=tolerance, budget=budget["energy"], reciprocal=proved))
-    if "sampling" in chosen and getattr(model, "has_sampler", True):
+    if "sampling" in chosen:
         step()
         samples = max(budget["sampling"] // len(ANGLES_DEG), 1 << 10)
         verdicts.append(sampling(model, samples=samples, seed=_seed(model), tests=tests))
+    if "microfacet" in chosen and facets is not None:
+        step()
+        verdicts.append(microfacet(facets))
+    if isinstance(model, BlackBox) and (remark := model.below_horizon()):
+        notes.append(remark)
     if any(v.check == "values" and "asked again" in v.message for v in verdicts):
         verdicts = [_doubted(verdict) for verdict in verdicts]
     return Report(

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from radiokit.contracts.bsdf import BSDF
-from radiokit.facts.directions import reflect
+from radiokit.facts.directions import reflect, refract
 from radiokit.measure.lattice import kronecker
 
 __all__ = ["GRAZING", "channels", "isotropic", "pairs", "polar", "seconds_per_evaluation"]
@@ -29,12 +29,16 @@ def polar(cosine: npt.ArrayLike, phi: npt.ArrayLike) -> FloatArray:
     return np.stack([sine * np.cos(phi), sine * np.sin(phi), cosine], axis=-1)
 
 
-def pairs(count: int) -> tuple[FloatArray, FloatArray]:
+def pairs(count: int, f: BSDF | None = None) -> tuple[FloatArray, FloatArray]:
     """Return ``count`` pairs of directions on the upper hemisphere, hard ones included.
 
     Half are uniform in solid angle, so that an odd region of any shape is hit by its share; a quarter
     has cosines spread evenly over six decades, down to 89.9999°; a quarter lies near the mirror pair,
     with offsets spread evenly over five decades.
+
+    For an ``f`` that transmits, all four combinations of sides get an equal share of each kind. Across the
+    surface, pairs lie near the refracted pair instead of the mirror pair, and half of the grazing ones have
+    one direction within 10⁻⁵ to 1 of the critical angle.
     """
     u = kronecker(count, 4)
     cos_i, cos_o = u[:, 0].copy(), u[:, 1].copy()
@@ -50,6 +54,33 @@ def pairs(count: int) -> tuple[FloatArray, FloatArray]:
     moved = mirror + offset[:, None] * polar(np.zeros(near.sum()), phi_i[near])
     moved[:, 2] = np.maximum(moved[:, 2], _SMALLEST_COSINE)
     wi[near] = moved / np.linalg.norm(moved, axis=1)[:, None]
+    if f is None or not f.transmissive:
+        return wi, wo
+    return _on_both_sides(wi, wo, u, kind, f.relative_index())
+
+
+def _on_both_sides(
+    wi: FloatArray, wo: FloatArray, u: FloatArray, kind: Any, eta: float
+) -> tuple[FloatArray, FloatArray]:
+    """Spread pairs over the four combinations of sides, those across the surface where it refracts."""
+    number = np.arange(len(wi)) // 4
+    below_i, below_o = (number % 2).astype(bool), (number // 2 % 2).astype(bool)
+    if eta != 1:
+        # The direction on the side of the larger index goes near its critical angle, on either side of it.
+        critical = (kind == 2) & (below_i != below_o) & (number // 4 % 2 == 0)
+        near = np.where(number // 8 % 2 == 0, 1.0, -1.0) * 10.0 ** (-5 * u[:, 0])
+        sine = np.clip(min(eta, 1 / eta) * (1 + near), 0.0, 1 - _SMALLEST_COSINE)
+        for w, below, phi in ((wi, below_i, u[:, 2]), (wo, below_o, u[:, 3])):
+            rows = critical & (below == (eta > 1))
+            w[rows] = polar(np.sqrt((1 - sine) * (1 + sine)), 2 * np.pi * phi)[rows]
+    wi[below_i, 2] *= -1
+    wo[below_o, 2] *= -1
+    across = (kind == 3) & (below_i != below_o)
+    to, _ = refract(wo[across], eta=eta)
+    offset = 10.0 ** (-5 * u[across, 0])
+    moved = to + offset[:, None] * polar(np.zeros(across.sum()), 2 * np.pi * u[across, 2])
+    moved[:, 2] = np.copysign(np.maximum(np.abs(to[:, 2]), _SMALLEST_COSINE), -wo[across, 2])
+    wi[across] = moved / np.linalg.norm(moved, axis=1)[:, None]
     return wi, wo
 
 
@@ -61,7 +92,7 @@ def channels(values: Any) -> FloatArray:
 
 def isotropic(f: BSDF, count: int = 512) -> bool:
     """Return whether turning both directions about the normal leaves f unchanged, as far as can be seen."""
-    wi, wo = pairs(count)
+    wi, wo = pairs(count, f)
     angle = 2 * np.pi * kronecker(count, 1)[:, 0]
     c, s = np.cos(angle), np.sin(angle)
 

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from radiokit.checks.probes import channels, polar
-from radiokit.contracts.albedo import directional_albedo
+from radiokit.checks.delta import in_lobe, lobe_means
+from radiokit.checks.parts import Part, flipped, mean_weight, parts
+from radiokit.checks.probes import channels, pairs, polar
 from radiokit.contracts.bsdf import BSDF, FloatArray
 from radiokit.facts.errors import NonFiniteError
 from radiokit.facts.verdict import Evidence, Outcome, Verdict, Witness
@@ -24,16 +25,19 @@ LEVEL = 1e-6
 
 CELLS = (12, 12)  # along radius and azimuth, on each side of the plane of incidence
 NODES = 8  # Gauss-Legendre nodes along each side of a cell
+MOST = 400_000  # evaluations that one integral may cost
 WEIGHT = 1e-6  # relative disagreement of a weight that is let pass
 
 
 def sampling(f: BSDF, *, samples: int = 1 << 17, seed: int = 0, tests: int = 1) -> Verdict:
     """Judge whether the sampler of ``f`` agrees with its pdf and its values.
 
-    At six outgoing directions up to 89.5°: every weight equals f cosθi / pdf; the pdf integrates to at most
-    1 and falls short by exactly the share of samples that leave below the horizon; the samples follow it
-    (chi-square over cells that are fine where the lobe is); the weights' mean is the albedo (Bernstein's
-    inequality, since rare weights may matter).
+    At six outgoing directions up to 89.5°, on both sides of a surface that transmits: every weight equals
+    f cosθi / pdf; the pdf integrates to at most 1 and falls short by exactly the share of samples that are
+    absorbed, leave below the horizon of a surface that does not transmit, or go into a delta lobe; the
+    samples follow it (chi-square over cells that are fine where the lobe is); each delta lobe is brought, on
+    average, the weight that is its due; the weights' mean is the albedo (Bernstein's inequality, since rare
+    weights may matter).
 
     Parameters
     ----------
@@ -47,24 +51,28 @@ def sampling(f: BSDF, *, samples: int = 1 << 17, seed: int = 0, tests: int = 1) 
 
     start = time.perf_counter()
     p_least, evaluations = 1.0, 0
-    level = sidak(LEVEL, tests * 2 * len(ANGLES_DEG))
+    places = [
+        (theta, below) for below in ((False, True) if f.transmissive else (False,)) for theta in ANGLES_DEG
+    ]
+    level = sidak(LEVEL, tests * 2 * len(places))
     details: dict[str, Any] = {"samples": samples, "angles_deg": list(ANGLES_DEG), "level": level}
     problem: tuple[str, Witness] | None = None
     rows = []
-    for k, theta in enumerate(ANGLES_DEG):
-        wo = polar(np.cos(np.deg2rad([theta])), [0.7 * k])[0]
+    for k, (theta, below) in enumerate(places):
+        wo = flipped(polar(np.cos(np.deg2rad([theta])), [0.7 * k])[0], below)
         rng = np.random.default_rng([seed, k])
-        u = rng.random((samples, 2))
+        u = rng.random((samples, f.dimensions))
         wi, weight = f.sample(u, np.broadcast_to(wo, (samples, 3)))
         evaluations += samples
         problem = _pointwise(f, u, wi, weight, wo)
         if problem is None:
             row, problem = _distribution(f, wi, weight, wo, level)
             evaluations += int(row.pop("evaluations", 0))
-            rows.append({"theta_deg": theta, **row})
-            p_least = min(p_least, row.get("p_chi_square", 1.0), row.get("p_albedo", 1.0))
+            side = {"side": "below" if below else "above"} if f.transmissive else {}
+            rows.append({"theta_deg": theta, **side, **row})
+            p_least = min(p_least, *(row.get(name, 1.0) for name in ("p_chi_square", "p_albedo", "p_delta")))
         if problem is not None:
-            problem = (f"{problem[0]}, at θo = {theta:g}°", problem[1])
+            problem = (f"{problem[0]}, at θo = {theta:g}°{' below' if below else ''}", problem[1])
             break
     details["rows"] = rows
     return Verdict(
@@ -73,7 +81,7 @@ def sampling(f: BSDF, *, samples: int = 1 << 17, seed: int = 0, tests: int = 1) 
         outcome=Outcome.HOLDS if problem is None else Outcome.VIOLATED,
         evidence=Evidence.MEASURED if problem is None else Evidence.REFUTED,
         message=(
-            f"{samples} samples at each of {len(ANGLES_DEG)} directions; smallest p = {p_least:.2g}"
+            f"{samples} samples at each of {len(places)} directions; smallest p = {p_least:.2g}"
             if problem is None
             else problem[0]
         ),
@@ -104,15 +112,7 @@ def _pointwise(
         return "a sample is no unit vector, or its weight is negative or not finite", witness(
             row, weight=weight[row]
         )
-    lobes = f.delta_lobes(held)
-    for lobe in lobes:  # what went into a delta lobe has no density to compare with
-        live &= np.linalg.norm(wi - lobe.wi, axis=1) > 1e-9
-    if lobes and not np.any(live):
-        total = sum(channels(lobe.weight)[0] for lobe in lobes)
-        mean = weight.mean(axis=0)
-        if np.any(np.abs(mean - total) > WEIGHT + 8 * weight.std(axis=0) / np.sqrt(len(weight))):
-            return "the weights' mean is not that of the delta lobes", witness(0, mean=mean, lobes=total)
-        return None
+    live &= ~in_lobe(f, wi, wo)  # what went into a delta lobe has no density to compare with
     rows = np.flatnonzero(live)
     density = np.asarray(f.pdf(wi[rows], held[rows]), dtype=float)
     value = channels(f.evaluate(wi[rows], held[rows]))
@@ -139,39 +139,46 @@ def _distribution(
     """Compare the samples with the pdf, cell by cell, and their mean weight with the albedo."""
     from radiokit.measure.statistics import bernstein_test, chi_square
 
-    if f.delta_lobes(wo[None, :]):
-        return {}, None
-
-    def density(w: FloatArray) -> FloatArray:
-        return np.asarray(f.pdf(w, np.broadcast_to(wo, w.shape)), dtype=float)
-
     samples = len(wi)
     at = {"wo": wo.tolist()}
-    width = f.lobe_width()
-    if width is None:
-        width = find_lobe(density, wo).width
-    try:
-        total = hemisphere(density, wo=wo, width=width, rtol=1e-7, max_evaluations=400_000)
-    except NonFiniteError as error:
-        return {}, ("the pdf is not finite", Witness(at, {"pdf": str(error)}))
-    row: dict[str, Any] = {"pdf_integral": float(total.value), "evaluations": total.evaluations}
-    if total.value - total.error > 1 + 1e-6:
+    special = in_lobe(f, wi, wo) | _absorbed(f, wi, weight, wo)
+    row, problem = _delta(f, wi, weight, wo, level)
+    if problem is not None or (row and not np.any(channels(weight)[~special]) and _only_delta(f, wo)):
+        return row, problem
+    below = bool(wo[2] < 0)
+    up, pieces = flipped(wo, below), parts(f, "wo", below)
+    places = [flipped(wi, below)] + ([flipped(wi, not below)] if len(pieces) > 1 else [])
+    row["evaluations"] = 0
+    most = MOST if len(pieces) == 1 else MOST // 4  # light that passes has kinks, and the samples err more
+    total, error = 0.0, 0.0
+    expected, observed = [], []
+    for piece, place in zip(pieces, places, strict=True):
+
+        def density(w: FloatArray, piece: Part = piece) -> FloatArray:
+            return np.asarray(piece.density(np.broadcast_to(up, w.shape), w), dtype=float)
+
+        aim = piece.aim(up)
+        width = None if piece.through else f.lobe_width()
+        if width is None:
+            width = find_lobe(density, aim).width
+        try:
+            found = hemisphere(density, wo=aim, width=width, rtol=1e-7, max_evaluations=most)
+        except NonFiniteError as problem_found:
+            return {}, ("the pdf is not finite", Witness(at, {"pdf": str(problem_found)}))
+        total, error = total + float(found.value), error + float(found.error)
+        cells, spent = _cell_shares(density, aim, width)
+        row["evaluations"] += found.evaluations + spent
+        here = place[(place[:, 2] > 0) & ~special]
+        expected.append(cells)
+        observed.append(np.bincount(_cell_of(here, aim, width), minlength=len(cells))[: len(cells)])
+    row["pdf_integral"] = total
+    if total - error > 1 + 1e-6:
+        domain = "sphere" if f.transmissive else "hemisphere"
         return row, (
-            f"the pdf integrates to {total.value:.6g} over the hemisphere, more than 1",
-            Witness(at, {"∫ pdf dω": float(total.value), "±": float(total.error)}),
+            f"the pdf integrates to {total:.6g} over the {domain}, more than 1",
+            Witness(at, {"∫ pdf dω": total, "±": error}),
         )
-    expected, spent = _cell_shares(density, wo, width)
-    row["evaluations"] += spent
-    inside = wi[:, 2] > 0
-    observed = np.bincount(_cell_of(wi[inside], wo, width), minlength=len(expected))[: len(expected)]
-    lost = max(0.0, 1 - float(expected.sum()))
-    below = samples - int(observed.sum())
-    if lost < 1e-6 and below == 0:
-        expected = expected / expected.sum()
-        shares, counts = expected, observed
-    else:
-        shares, counts = np.append(expected, lost), np.append(observed, below)
-    shares = np.maximum(shares, 0.0)
+    shares, counts = _with_rest(np.concatenate(expected), np.concatenate(observed), samples)
     fit = chi_square(counts, shares / shares.sum() * samples)
     row["p_chi_square"] = float(fit.p_value)
     row["chi_square"], row["dof"] = float(fit.statistic), int(fit.dof)
@@ -183,7 +190,7 @@ def _distribution(
             f"the samples do not follow the pdf: chi-square p = {fit.p_value:.1e}",
             Witness(at, values),
         )
-    truth = directional_albedo(f, wo, rtol=1e-6, max_evaluations=400_000)
+    truth = mean_weight(f, wo, rtol=1e-6, max_evaluations=len(pieces) * most)
     row["evaluations"] += truth.evaluations
     columns, exact = channels(weight), np.atleast_1d(truth.value)
     slack = np.broadcast_to(truth.error, exact.shape) + 1e-12
@@ -191,9 +198,59 @@ def _distribution(
     k = int(np.argmin(chances))
     p = row["p_albedo"] = min(1.0, chances[k] * len(chances))
     if p < level:
-        values = {"mean weight": columns[:, k].mean(), "∫ f cosθi dωi": exact[k], "p-value": p}
+        values = {"mean weight": columns[:, k].mean(), "∫ f |cosθi| dωi": exact[k], "p-value": p}
         return row, ("the weights' mean is not the albedo", Witness(at, values))
     return row, None
+
+
+def _delta(
+    f: BSDF, wi: FloatArray, weight: FloatArray, wo: FloatArray, level: float
+) -> tuple[dict[str, Any], tuple[str, Witness] | None]:
+    """Judge what the samples brought to each delta lobe."""
+    lobes = lobe_means(f, wi, weight, wo)
+    if not lobes:
+        return {}, None
+    worst = min(lobes, key=lambda lobe: float(lobe["p"]))
+    p = min(1.0, worst["p"] * len(lobes))
+    row = {"delta_lobes": lobes, "p_delta": p}
+    if p >= level:
+        return row, None
+    values = {name: worst[name] for name in ("due", "mean", "frequency")} | {"p-value": p}
+    return row, (
+        "the weights' mean is not that of the delta lobes",
+        Witness({"wo": wo.tolist(), "wi": worst["wi"]}, values),
+    )
+
+
+def _absorbed(f: BSDF, wi: FloatArray, weight: FloatArray, wo: FloatArray) -> Any:
+    """Return which samples were absorbed by a surface that transmits, and so went nowhere.
+
+    They have weight 0. Their direction may be any: they are told from a sample that went where f is 0 by an f
+    that is not, or by a pdf of 0.
+    """
+    found = np.zeros(len(wi), dtype=bool)
+    rows = np.flatnonzero(~channels(weight).any(axis=1)) if f.transmissive else ()
+    if len(rows):
+        held = np.broadcast_to(wo, (len(rows), 3))
+        unit = np.abs(np.linalg.norm(wi[rows], axis=1) - 1) < 1e-6
+        safe = np.where(unit[:, None], wi[rows], wo)
+        dark = ~channels(f.evaluate(safe, held)).any(axis=1)
+        found[rows] = ~unit | ~dark | (np.asarray(f.pdf(safe, held)) == 0)
+    return found
+
+
+def _only_delta(f: BSDF, wo: FloatArray) -> bool:
+    """Whether nothing is sampled beside the delta lobes, as far as can be seen."""
+    wi, _ = pairs(256, f)
+    return not np.any(f.pdf(wi, np.broadcast_to(wo, wi.shape)))
+
+
+def _with_rest(expected: FloatArray, observed: Any, samples: int) -> tuple[FloatArray, Any]:
+    """Append a cell for what is absorbed, lost below the horizon or gone into a delta lobe, if any is."""
+    lost, rest = max(0.0, 1 - float(expected.sum())), samples - int(observed.sum())
+    if lost < 1e-6 and rest == 0:
+        return np.maximum(expected / expected.sum(), 0.0), observed
+    return np.maximum(np.append(expected, lost), 0.0), np.append(observed, rest)
 
 
 def _cell_shares(density: Any, wo: FloatArray, width: float) -> tuple[FloatArray, int]:

@@ -1,4 +1,4 @@
-"""Supremum: the largest directional albedo over the hemisphere, by a scan of stated step and refinement."""
+"""Supremum: the largest directional albedo on one side, by a scan of stated step and refinement."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from radiokit.checks.parts import Part, delta_share, flipped, parts, scattered
 from radiokit.checks.probes import GRAZING, channels, polar
-from radiokit.contracts.albedo import Side, delta_albedo, directional_albedo, integrand
+from radiokit.contracts.albedo import Side
 from radiokit.contracts.bsdf import BSDF, FloatArray
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.converge import BLOCK
@@ -54,11 +55,14 @@ class Extremum:
     evaluations: int
 
 
-def scan_supremum(f: BSDF, *, fixed: Side, turns: bool, budget: int, tolerance: float) -> Extremum:
-    """Find the supremum of the directional albedo for one side.
+def scan_supremum(
+    f: BSDF, *, fixed: Side, turns: bool, budget: int, tolerance: float, below: bool = False
+) -> Extremum:
+    """Find the supremum of the directional albedo, with one of the two directions held fixed.
 
     Scans polar angles up to 89.99° (all azimuths too, unless ``turns`` says that f is isotropic) with two
-    rules, climbs from the highest few by bounded optimisation, and integrates there with a bound.
+    rules, climbs from the highest few by bounded optimisation, and integrates there with a bound. For a model
+    that transmits the albedo is of both hemispheres together, and angles crowd at the critical one.
 
     Parameters
     ----------
@@ -70,8 +74,11 @@ def scan_supremum(f: BSDF, *, fixed: Side, turns: bool, budget: int, tolerance: 
         Evaluations that may be spent; a smaller one gives a coarser scan, and says so.
     tolerance : float
         The error that the final integral should have.
+    below : bool
+        Whether the fixed direction is below the surface; the polar angle is then from the inner normal.
     """
-    sides = 1 if f.isotropic else 2
+    pieces = parts(f, fixed, below)
+    sides = (1 if f.isotropic else 2) * len(pieces)
     per_angle = sides * (FINE**2 + COARSE**2)
     rich = 0.7 * budget >= per_angle * (GRAZING / STEP + 40)
     fine, coarse = (FINE, COARSE) if rich else (CHEAP, 0)
@@ -82,6 +89,7 @@ def scan_supremum(f: BSDF, *, fixed: Side, turns: bool, budget: int, tolerance: 
     step = float(theta[1])
     if rich:
         theta = np.union1d(theta, np.pi / 2 - np.geomspace(np.pi / 2 - GRAZING, 2 * STEP, 24))
+        theta = np.union1d(theta, _critical(f, below))
     phi = np.full(len(theta), 0.3)
     if not turns:
         rows = max(9, min(120, (affordable - count) // AZIMUTHS))
@@ -90,10 +98,11 @@ def scan_supremum(f: BSDF, *, fixed: Side, turns: bool, budget: int, tolerance: 
         )
         theta, phi = np.concatenate([theta, grid_t.ravel()]), np.concatenate([phi, grid_p.ravel()])
 
-    aim, evaluations = _aim(f, theta, phi, fixed, rich)
+    aimed = [_aim(piece, theta, phi, rich) for piece in pieces]
+    aims, evaluations = tuple(aim for aim, _ in aimed), sum(spent for _, spent in aimed)
     w = polar(np.cos(theta), phi)
-    one = _scan(f, w, aim, 1.0, fine, fixed)
-    two = _scan(f, w, aim, 1.3, coarse, fixed) if coarse else one
+    one = _scan(pieces, w, aims, 1.0, fine)
+    two = _scan(pieces, w, aims, 1.3, coarse) if coarse else one
     evaluations += len(theta) * per_angle
     doubt = np.abs(one - two)
     # The ends, what is surely highest, and what may be higher still.
@@ -109,10 +118,15 @@ def scan_supremum(f: BSDF, *, fixed: Side, turns: bool, budget: int, tolerance: 
     def integrate(index: int, direction: FloatArray, **tolerances: Any) -> Estimate:
         """Integrate with few evaluations, and with all that are left only where the limit is in doubt."""
         nonlocal evaluations
-        width = None if rich or aim.retro[index] else float(aim.width[index])
+        widths = tuple(None if rich or aim.retro[index] else float(aim.width[index]) for aim in aims)
         for most in dict.fromkeys((min(share, ENOUGH), share)):
-            found = directional_albedo(
-                f, direction, fixed=fixed, width=width, max_evaluations=most, **tolerances
+            found = scattered(
+                f,
+                flipped(direction, below),
+                fixed=fixed,
+                widths=widths,
+                max_evaluations=most,
+                **tolerances,
             )
             evaluations += found.evaluations
             if found.converged or np.all(np.abs(found.value - 1) > found.error + tolerance):
@@ -120,7 +134,7 @@ def scan_supremum(f: BSDF, *, fixed: Side, turns: bool, budget: int, tolerance: 
         return found
 
     for index in tops:
-        direction, spent = _refined(f, theta, phi, aim, index, step, fixed, turns, left // (8 * len(tops)))
+        direction, spent = _refined(pieces, theta, phi, aims, index, step, turns, left // (8 * len(tops)))
         evaluations += spent
         for candidate in (w[index], direction):
             found = _worst_channel(integrate(index, candidate, rtol=0.0, atol=tolerance))
@@ -135,7 +149,7 @@ def scan_supremum(f: BSDF, *, fixed: Side, turns: bool, budget: int, tolerance: 
     last = float(theta.max())
     return Extremum(
         estimate=best,
-        direction=place,
+        direction=flipped(place, below),
         theta_deg=float(np.rad2deg(angle)),
         phi_deg=float(np.rad2deg(np.arctan2(place[1], place[0]))),
         at_grazing=bool(angle >= last - 1e-9 and _rises(theta, one)),
@@ -154,7 +168,7 @@ def _rises(theta: FloatArray, profile: FloatArray) -> bool:
 
 @dataclass(frozen=True)
 class _Aim:
-    """The lobe's width, and whether it is a retro-reflective one, at each scanned direction."""
+    """A part's lobe width, and whether it is a retro-reflective one, at each scanned direction."""
 
     width: FloatArray
     retro: npt.NDArray[np.bool_]
@@ -163,24 +177,44 @@ class _Aim:
         return _Aim(self.width[index], self.retro[index])
 
 
-def _aim(f: BSDF, theta: FloatArray, phi: FloatArray, fixed: Side, rich: bool) -> tuple[_Aim, int]:
+def _critical(f: BSDF, below: bool) -> FloatArray:
+    """Return angles that crowd at the critical one, if there is one on this side."""
+    eta = 1 / f.relative_index() if below else f.relative_index()  # the other side's index over this one's
+    if not f.transmissive or eta >= 1:
+        return np.zeros(0)
+    angle = np.arctan2(eta, np.sqrt((1 - eta) * (1 + eta)))
+    gap = np.geomspace(1e-6, STEP, 12)
+    near: FloatArray = np.concatenate([angle - gap, angle + gap])
+    return near[(near > 0) & (near < GRAZING)]
+
+
+def _aim(part: Part, theta: FloatArray, phi: FloatArray, rich: bool) -> tuple[_Aim, int]:
     """Return where to aim at every angle: by the model's own word, or found at some and interpolated."""
-    known = f.lobe_width()
+    known = None if part.through else part.f.lobe_width()
     if known is not None:
         return _Aim(np.full(len(theta), known), np.zeros(len(theta), dtype=bool)), 0
     knots = np.deg2rad([*np.linspace(0.0, 85.0, 7), 89.0, 89.9] if rich else [0.0, 60.0, 89.0])
     probe = PROBE if rich else (24, 6)
     places = polar(np.cos(knots), np.full(len(knots), phi[0]))
-    found = [find_lobe(integrand(f, w, fixed), w, probe) for w in places]
+    found = [find_lobe(part.integrand(w), part.aim(w), probe) for w in places]
     width = np.exp(np.interp(theta, knots, np.log([lobe.width for lobe in found])))
     retro = np.interp(theta, knots, [float(lobe.retro) for lobe in found]) > 0.5
     return _Aim(width, retro), sum(lobe.evaluations for lobe in found)
 
 
-def _scan(f: BSDF, w: FloatArray, aim: _Aim, scale: float, n: int, fixed: Side) -> FloatArray:
+def _scan(
+    pieces: tuple[Part, ...], w: FloatArray, aims: tuple[_Aim, ...], scale: float, n: int
+) -> FloatArray:
     """Integrate at every direction of ``w`` (M, 3) with one rule; the largest channel of each."""
-    parts = [_integrals(f, w[block], aim[block], scale, n, fixed) for block in _blocks(len(w), 2 * n * n)]
-    return np.concatenate(parts)
+    first = pieces[0]
+    blocks = _blocks(len(w), 2 * n * n)
+    found = []
+    for block in blocks:
+        sums = delta_share(first.f, flipped(w[block], first.below))
+        for part, aim in zip(pieces, aims, strict=True):
+            sums = sums + _integrals(part, w[block], aim[block], scale, n)
+        found.append(sums.max(axis=1))
+    return np.concatenate(found)
 
 
 def _blocks(count: int, cost: int) -> Iterator[slice]:
@@ -189,17 +223,14 @@ def _blocks(count: int, cost: int) -> Iterator[slice]:
         yield slice(start, start + size)
 
 
-def _integrals(f: BSDF, w: FloatArray, aim: _Aim, scale: float, n: int, fixed: Side) -> FloatArray:
-    other, weight = slope_rule(w, scale * aim.width, n, symmetric=f.isotropic)
+def _integrals(part: Part, w: FloatArray, aim: _Aim, scale: float, n: int) -> FloatArray:
+    other, weight = slope_rule(part.aim(w), scale * aim.width, n, symmetric=part.f.isotropic)
     other[aim.retro] = turned(other[aim.retro])
     flat = other.reshape(-1, 3)
     held = np.repeat(w, other.shape[1], axis=0)
-    value = f.evaluate(flat, held) if fixed == "wo" else f.evaluate(held, flat)
-    terms = channels(value) * (flat[:, 2] * weight.ravel())[:, None]
-    sums = terms.reshape(len(w), -1, terms.shape[1]).sum(axis=1)
-    sums = sums + np.array([np.ravel(delta_albedo(f, v)) for v in w])
-    result: FloatArray = sums.max(axis=1)
-    return result
+    terms = channels(part.values(held, flat)) * (flat[:, 2] * weight.ravel())[:, None]
+    sums: FloatArray = terms.reshape(len(w), -1, terms.shape[1]).sum(axis=1)
+    return sums
 
 
 def _separate(order: Any, theta: FloatArray, phi: FloatArray, step: float, most: int) -> list[int]:
@@ -218,13 +249,12 @@ def _separate(order: Any, theta: FloatArray, phi: FloatArray, step: float, most:
 
 
 def _refined(
-    f: BSDF,
+    pieces: tuple[Part, ...],
     theta: FloatArray,
     phi: FloatArray,
-    aim: _Aim,
+    aims: tuple[_Aim, ...],
     index: int,
     step: float,
-    fixed: Side,
     turns: bool,
     budget: int,
 ) -> tuple[FloatArray, int]:
@@ -232,7 +262,8 @@ def _refined(
     from scipy.optimize import minimize, minimize_scalar
 
     n = 32 if budget > 60_000 else CHEAP
-    cost = n * n * (1 if f.isotropic else 2)
+    cost = n * n * len(pieces) * (1 if pieces[0].f.isotropic else 2)
+    here = tuple(aim[index : index + 1] for aim in aims)
     start = polar(np.cos(theta[index : index + 1]), phi[index : index + 1])[0]
     evaluations = int(min(budget // cost, 25))
     if evaluations < 5:
@@ -244,7 +275,7 @@ def _refined(
         nonlocal spent
         spent += cost
         w = polar(np.cos([t]), [p])
-        return -float(_scan(f, w, aim[index : index + 1], 1.0, n, fixed)[0])
+        return -float(_scan(pieces, w, here, 1.0, n)[0])
 
     if turns:
         found = minimize_scalar(

@@ -8,7 +8,7 @@ import numpy as np
 
 from radiokit.checks.probes import channels, pairs
 from radiokit.contracts.bsdf import BSDF, FloatArray
-from radiokit.facts.directions import reflect
+from radiokit.facts.directions import reflect, refract
 from radiokit.facts.verdict import Evidence, Outcome, Verdict, Witness
 
 __all__ = ["values"]
@@ -21,10 +21,11 @@ def values(f: BSDF, *, count: int = 1 << 15) -> Verdict:
     """Judge whether ``f`` is finite, non-negative and repeatable.
 
     Looks at ``count`` pairs of ``probes.pairs``, and at exact ones where formulas break: normal
-    incidence, exact mirror pairs, equal directions, both directions at 89.9999°.
+    incidence, exact mirror pairs, equal directions, both directions at 89.9999°; for a model that
+    transmits also at exact refracted pairs and opposite directions, on all sides.
     """
     start = time.perf_counter()
-    wi, wo = _with_exact(*pairs(max(count, 64)))
+    wi, wo = _with_exact(f, *pairs(max(count, 64), f))
     first = channels(f.evaluate(wi, wo))
     second = channels(f.evaluate(wi, wo))
     witness, message = _worst(wi, wo, first, second, f.precision)
@@ -42,12 +43,17 @@ def values(f: BSDF, *, count: int = 1 << 15) -> Verdict:
     )
 
 
-def _with_exact(wi: FloatArray, wo: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _with_exact(f: BSDF, wi: FloatArray, wo: FloatArray) -> tuple[FloatArray, FloatArray]:
     some = wo[: max(16, len(wo) // 16)]
     normal = np.array([[0.0, 0.0, 1.0]])
     grazing = wo[2::4][: len(some)]
     extra_i = [normal, reflect(some), some, np.repeat(normal, len(some), axis=0), some, reflect(grazing)]
     extra_o = [normal, some, some, some, np.repeat(normal, len(some), axis=0), grazing]
+    if f.transmissive:
+        to, total = refract(some, eta=f.relative_index())
+        there, back = to[~total], some[~total]
+        extra_i += [there, back, -some, normal, -normal, -normal, -grazing]
+        extra_o += [back, there, some, -normal, normal, -normal, grazing]
     return np.concatenate([wi, *extra_i]), np.concatenate([wo, *extra_o])
 
 

@@ -17,6 +17,7 @@ from radiokit.facts.directions import check_directions
 from radiokit.facts.source import Source
 
 if TYPE_CHECKING:
+    from radiokit.contracts.microfacet import Microfacets
     from radiokit.measure.kernels import Kernel
     from radiokit.measure.twin import Twin
 
@@ -48,7 +49,12 @@ class Claims:
 
 @dataclass(frozen=True)
 class DeltaLobe:
-    """Scattering into a single direction: ``wi`` (N, 3) and ``weight`` (N,), the share of the flux."""
+    """Scattering into a single direction: ``wi`` (N, 3) and ``weight`` (N,), the share of the flux.
+
+    Of the flux that arrives from ``wi`` this share leaves towards ``wo``, and the same share the other way
+    round. Radiance is multiplied by ``weight n(wo)² / n(wi)²``, with n(w) the index on w's side: that is
+    f |cos θi| / pdf of a sample that always goes there.
+    """
 
     wi: FloatArray
     weight: FloatArray
@@ -139,6 +145,10 @@ class BSDF(ABC):
         that ∫ f |cosθo| dωo, the light reflected and transmitted, is at most 1.
         """
         return 1.0
+
+    def microfacets(self) -> Microfacets | None:
+        """Return the distribution of the surface's facets with its masking, or None if it has no facets."""
+        return None
 
     def diffuse_reflectance(self) -> float | None:
         """Return ρ of a model that is ρ/π for every pair of directions above the surface, None for another.
