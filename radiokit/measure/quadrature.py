@@ -16,7 +16,7 @@ from radiokit.measure.converge import GK21, ROUNDING, Integrand, RuleSum, adapti
 from radiokit.measure.lattice import kronecker
 from radiokit.measure.slope import find_lobe, gauss_legendre, mirrored, slope_map, slope_rule, turned
 
-__all__ = ["box", "hemisphere"]
+__all__ = ["box", "hemisphere", "missed", "scan_of"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -106,7 +106,7 @@ def hemisphere(
     sides = 1 if symmetric else 2
     scan = None
     if not smooth and max_evaluations - spent > 2 * SCAN:
-        scan = _scan(integrand, wo, core)
+        scan = scan_of(integrand, wo, core)
         spent += SCAN
     total = spent + np.cumsum([sides * radii * azimuths for radii, azimuths in SLOPE_SIZES])
     sizes = SLOPE_SIZES[: max(3, int(np.sum(total <= max_evaluations)))]
@@ -121,7 +121,7 @@ def hemisphere(
     found = converge(rules(), rtol, atol, smooth=smooth, rounding=rounding)
     method = "slope-space quadrature"
     budget = max_evaluations - found.evaluations - spent
-    if (not found.converged or _missed(found, scan) > 0) and budget > 4 * GK21:
+    if (not found.converged or missed(found, scan) > 0) and budget > 4 * GK21:
 
         def panels(scale: float) -> Integrand:
             def square(points: FloatArray) -> Any:
@@ -140,10 +140,10 @@ def hemisphere(
         if refined.converged or np.all(refined.error <= found.error):
             found, method = refined, "adaptive cubature in slope space"
         found = replace(found, evaluations=evaluations)
-    missed = _missed(found, scan)
-    if missed > 0:
+    lost = missed(found, scan)
+    if lost > 0:
         note = "a scan of the hemisphere found mass that the rules missed"
-        found = replace(found, error=np.maximum(found.error, 2 * missed), converged=False, note=note)
+        found = replace(found, error=np.maximum(found.error, 2 * lost), converged=False, note=note)
     return replace(
         found,
         evaluations=found.evaluations + spent,
@@ -153,7 +153,7 @@ def hemisphere(
     )
 
 
-def _scan(integrand: Integrand, wo: FloatArray, width: float) -> tuple[Any, Any]:
+def scan_of(integrand: Integrand, wo: FloatArray, width: float) -> tuple[Any, Any]:
     """Return a rough integral and its uncertainty from points spread evenly, which see between the nodes."""
     x, s = kronecker(SCAN, 2).T
     wi, weight, _ = slope_map(wo, width, x, s)
@@ -162,7 +162,7 @@ def _scan(integrand: Integrand, wo: FloatArray, width: float) -> tuple[Any, Any]
     return terms.mean(axis=0), terms.std(axis=0) / np.sqrt(SCAN)
 
 
-def _missed(found: Estimate, scan: tuple[Any, Any] | None) -> float:
+def missed(found: Estimate, scan: tuple[Any, Any] | None) -> float:
     """Return by how much an integral and the scan differ beyond what either allows; 0 where they agree."""
     if scan is None:
         return 0.0
