@@ -16,7 +16,7 @@ from radiokit.measure.converge import GK21, ROUNDING, Integrand, RuleSum, adapti
 from radiokit.measure.lattice import kronecker
 from radiokit.measure.slope import find_lobe, gauss_legendre, mirrored, slope_map, slope_rule, turned
 
-__all__ = ["box", "hemisphere", "missed", "scan_of"]
+__all__ = ["box", "hemisphere", "missed"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -106,7 +106,7 @@ def hemisphere(
     sides = 1 if symmetric else 2
     scan = None
     if not smooth and max_evaluations - spent > 2 * SCAN:
-        scan = scan_of(integrand, wo, core)
+        scan = _scan(integrand, wo, core)
         spent += SCAN
     total = spent + np.cumsum([sides * radii * azimuths for radii, azimuths in SLOPE_SIZES])
     sizes = SLOPE_SIZES[: max(3, int(np.sum(total <= max_evaluations)))]
@@ -153,7 +153,7 @@ def hemisphere(
     )
 
 
-def scan_of(integrand: Integrand, wo: FloatArray, width: float) -> tuple[Any, Any]:
+def _scan(integrand: Integrand, wo: FloatArray, width: float) -> tuple[Any, Any]:
     """Return a rough integral and its uncertainty from points spread evenly, which see between the nodes."""
     x, s = kronecker(SCAN, 2).T
     wi, weight, _ = slope_map(wo, width, x, s)
