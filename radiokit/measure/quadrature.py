@@ -15,6 +15,7 @@ from radiokit.facts.estimate import Estimate
 from radiokit.measure.converge import GK21, ROUNDING, Integrand, RuleSum, adaptive, apply_rule, converge
 from radiokit.measure.lattice import kronecker
 from radiokit.measure.slope import find_lobe, gauss_legendre, mirrored, slope_map, slope_rule, turned
+from radiokit.measure.split import kinked, split_rule
 
 __all__ = ["box", "hemisphere", "missed"]
 
@@ -23,10 +24,35 @@ FloatArray = npt.NDArray[np.float64]
 SIZES = (16, 24, 32, 48, 64, 96, 128, 192)
 """Nodes along each axis of a rectangle, tried in turn until rules agree."""
 
-SLOPE_SIZES = ((20, 14), (28, 20), (40, 28), (52, 40), (72, 52), (104, 76), (144, 104), (208, 152))
+SLOPE_SIZES: tuple[tuple[int, int], ...] = (
+    (20, 14),
+    (28, 20),
+    (40, 28),
+    (52, 40),
+    (72, 52),
+    (104, 76),
+    (144, 104),
+    (208, 152),
+    (288, 216),
+    (400, 304),
+)
 """Radii and azimuths in slope space; a lobe at grazing incidence needs more of the former."""
 
-WIDTHS = (1.35, 0.8, 1.2, 1.0, 0.9, 1.1, 0.85, 1.0)
+SPLIT_SIZES: tuple[tuple[int, int], ...] = (
+    (14, 10),
+    (18, 14),
+    (24, 20),
+    (32, 28),
+    (44, 40),
+    (60, 56),
+    (84, 80),
+    (120, 112),
+    (160, 160),
+    (200, 240),
+)
+"""Radii and azimuths of each part of a rule that is cut at the circle cosθi = cosθo."""
+
+WIDTHS = (1.35, 0.8, 1.2, 1.0, 0.9, 1.1, 0.85, 1.0, 0.9, 1.1)
 """Factors on the lobe's width, so that consecutive rules do not fail in the same way."""
 
 SCAN = 4096
@@ -104,16 +130,22 @@ def hemisphere(
             original = integrand
             integrand = lambda w: original(turned(w))  # noqa: E731
     sides = 1 if symmetric else 2
+    cut = False
+    if not smooth and max_evaluations - spent > 2 * SCAN:
+        cut, looked = kinked(integrand, wo, core)
+        spent += looked
     scan = None
     if not smooth and max_evaluations - spent > 2 * SCAN:
         scan = _scan(integrand, wo, core)
         spent += SCAN
-    total = spent + np.cumsum([sides * radii * azimuths for radii, azimuths in SLOPE_SIZES])
-    sizes = SLOPE_SIZES[: max(3, int(np.sum(total <= max_evaluations)))]
+    parts, sizes = (3, SPLIT_SIZES) if cut else (1, SLOPE_SIZES)
+    total = spent + np.cumsum([sides * parts * radii * azimuths for radii, azimuths in sizes])
+    sizes = sizes[: max(3, int(np.sum(total <= max_evaluations)))]
 
     def rules() -> Iterator[RuleSum]:
+        rule = split_rule if cut else slope_rule
         for n, factor in zip(sizes, WIDTHS, strict=False):
-            wi, weight = slope_rule(wo, width * factor, n, symmetric=symmetric)
+            wi, weight = rule(wo, width * factor, n, symmetric=symmetric)
             yield apply_rule(integrand, wi, weight)
 
     # A direction is known to an eps; a narrow lobe magnifies that, and a grazing one more.

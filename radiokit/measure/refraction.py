@@ -212,7 +212,7 @@ def rest_rule(
     have its normal below the horizon: |cosθi| below cosθo/η for η > 1, above it for η < 1. The coordinates
     are stereographic about −z, where all limits are circles.
 
-    >>> wi, weight = rest_rule(np.array([0.0, 0.0, 1.0]), 1.5, 16)
+    >>> wi, weight = rest_rule(np.array([0.0, 0.0, 1.0]), 1.5, 32)
     >>> round(float(weight.sum() / (2 * np.pi)), 12)
     0.666666666667
     """

@@ -18,7 +18,7 @@ from radiokit.measure.quadrature import SCAN, STEEPNESS, WIDTHS, hemisphere, mis
 from radiokit.measure.refraction import refracted, refracted_map, refracted_rule, rest_rule
 from radiokit.measure.slope import PROBE_WIDTH, mirrored, slope_map
 
-__all__ = ["transmission"]
+__all__ = ["sphere", "transmission"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -91,16 +91,16 @@ def transmission(
     True
     """
     start = time.perf_counter()
-    wo = np.asarray(wo, dtype=float)
-    if wo[2] == 0 or not np.isfinite(wo[2]):
-        raise ParameterError("wo", wo.tolist(), "not in the surface (z = 0)")
+    direction: FloatArray = np.asarray(wo, dtype=float)
+    if direction[2] == 0 or not np.isfinite(direction[2]):
+        raise ParameterError("wo", direction.tolist(), "not in the surface (z = 0)")
     if not (np.isfinite(eta) and eta > 0):
         raise ParameterError("eta", eta, "finite and greater than 0")
     if width is not None and not width > 0:
         raise ParameterError("width", width, "greater than 0")
     below = integrand
-    if wo[2] < 0:
-        wo = wo * _FLIP
+    if direction[2] < 0:
+        direction = direction * _FLIP
         below = lambda w: integrand(w * _FLIP)  # noqa: E731
 
     def flipped(w: FloatArray) -> Any:
@@ -109,29 +109,29 @@ def transmission(
     options: dict[str, Any] = {"rtol": rtol, "atol": atol, "symmetric": symmetric}
     if abs(eta - 1) < THIN:
         found = hemisphere(
-            flipped, wo=wo, width=width, smooth=smooth, max_evaluations=max_evaluations, **options
+            flipped, wo=direction, width=width, smooth=smooth, max_evaluations=max_evaluations, **options
         )
         return replace(found, method=f"{found.method}, mirrored", seconds=time.perf_counter() - start)
 
     spent = 0
     if width is None:
-        width, spent = _find_width(below, wo, eta)
+        width, spent = _find_width(below, direction, eta)
     budget = max_evaluations - spent
-    aside = _aside(below, wo, eta, LOOK_SMOOTH if smooth or budget < 8 * SCAN else SCAN)
+    aside = _aside(below, direction, eta, LOOK_SMOOTH if smooth or budget < 8 * SCAN else SCAN)
     spent += aside.points
     rest = bool(np.any(aside.mean != 0) or np.any(aside.spread != 0))
     scan = None
     if not smooth and budget > 2 * SCAN:
-        lobe = _lobe_scan(below, wo, eta, width)
+        lobe = _lobe_scan(below, direction, eta, width)
         spent += lobe.points
         scan = lobe.mean + aside.mean, np.hypot(lobe.spread, aside.spread)
 
     def rules() -> Iterator[RuleSum]:
         used = spent
         for k, (n, factor) in enumerate(zip(SIZES, WIDTHS, strict=False)):
-            wi, weight, _ = refracted_rule(wo, eta, width * factor, n, symmetric=symmetric)
+            wi, weight, _ = refracted_rule(direction, eta, width * factor, n, symmetric=symmetric)
             if rest:
-                other, other_weight = rest_rule(wo, eta, REST_SIZES[k], symmetric=symmetric)
+                other, other_weight = rest_rule(direction, eta, REST_SIZES[k], symmetric=symmetric)
                 wi, weight = np.concatenate([wi, other]), np.concatenate([weight, other_weight])
             used += len(wi)
             if k > 2 and used > max_evaluations:
@@ -139,12 +139,12 @@ def transmission(
             yield apply_rule(below, wi, weight)
 
     # The normal of a facet between media of nearly the same index is known to an eps of their difference.
-    rounding = ROUNDING + STEEPNESS / width * (1 / float(wo[2]) + 4 / abs(eta - 1))
+    rounding = ROUNDING + STEEPNESS / width * (1 / float(direction[2]) + 4 / abs(eta - 1))
     found = converge(rules(), rtol, atol, smooth=smooth, rounding=rounding)
     method = "slope-space quadrature of refraction"
     budget = max_evaluations - found.evaluations - spent
     if (not found.converged or missed(found, scan) > 0) and budget > 4 * GK21:
-        other_way = hemisphere(flipped, wo=wo, smooth=smooth, max_evaluations=budget, **options)
+        other_way = hemisphere(flipped, wo=direction, smooth=smooth, max_evaluations=budget, **options)
         spent += other_way.evaluations
         if other_way.converged or np.all(other_way.error <= found.error):
             spent += found.evaluations - other_way.evaluations
@@ -160,6 +160,56 @@ def transmission(
         method=method,
         note=found.note if found.note or found.converged else "the tolerance was not reached",
     )
+
+
+def sphere(
+    integrand: Integrand,
+    *,
+    wo: npt.ArrayLike,
+    eta: float = 1.0,
+    width: float | None = None,
+    rtol: float = 1e-8,
+    atol: float = 0.0,
+    symmetric: bool = False,
+    smooth: bool = False,
+    max_evaluations: int = 4_000_000,
+) -> Estimate:
+    """Integrate over all directions: wo's own side by ``hemisphere``, the other one by ``transmission``.
+
+    The tolerance is that of the sum, so that a side that adds little costs little.
+
+    Parameters
+    ----------
+    integrand, wo, eta, width, rtol, atol, symmetric, smooth, max_evaluations
+        As for ``transmission``; the integrand is asked for directions on both sides.
+
+    >>> estimate = sphere(lambda w: np.abs(w[:, 2]), wo=(0.0, 0.6, -0.8), eta=1.5)
+    >>> round(float(estimate.value) / np.pi, 9)
+    2.0
+    """
+    start = time.perf_counter()
+    direction: FloatArray = np.asarray(wo, dtype=float)
+    own = integrand if not direction[2] < 0 else lambda w: integrand(w * _FLIP)
+    options: dict[str, Any] = {"width": width, "symmetric": symmetric, "smooth": smooth}
+    reflected = hemisphere(
+        own,
+        wo=direction * [1.0, 1.0, np.copysign(1.0, direction[2])],
+        rtol=rtol / 2,
+        atol=atol / 2,
+        max_evaluations=max_evaluations // 2,
+        **options,
+    )
+    enough = max(atol / 2, rtol / 2 * float(np.min(np.abs(reflected.value))))
+    left = max_evaluations - reflected.evaluations
+    transmitted = transmission(
+        integrand, wo=direction, eta=eta, rtol=rtol / 2, atol=enough, max_evaluations=left, **options
+    )
+    found = reflected + transmitted
+    converged = bool(np.all(found.error <= np.maximum(atol, rtol * np.abs(found.value))))
+    converged = converged and not any("scan" in note for note in (reflected.note, transmitted.note))
+    note = "" if converged else found.note or "the tolerance was not reached"
+    seconds = time.perf_counter() - start
+    return replace(found, converged=converged, note=note, seconds=seconds)
 
 
 @dataclass(frozen=True)
