@@ -208,13 +208,18 @@ class Lobe:
 
 
 def find_lobe(
-    integrand: Callable[[FloatArray], Any], wo: npt.ArrayLike, probe: tuple[int, int] = PROBE
+    integrand: Callable[[FloatArray], Any],
+    wo: npt.ArrayLike,
+    probe: tuple[int, int] = PROBE,
+    *,
+    around: tuple[bool, ...] = (False, True),
 ) -> Lobe:
     """Find the lobe at which ``slope_rule`` should aim for an unknown integrand.
 
     The width is the median slope of the half vector under the integrand's own mass, seen by a rule whose
     radii are spread evenly over five decades. It is α for GGX, and about 0.5 for a diffuse lobe. The rule
-    looks around the mirror direction and around ``wo`` itself, and the larger mass decides.
+    looks around the mirror direction and around ``wo`` itself, and the larger mass decides; ``around`` is
+    (False,) to look around the mirror direction alone.
 
     >>> lobe = find_lobe(lambda wi: wi[:, 2], (0.0, 0.0, 1.0))
     >>> 0.3 < lobe.width < 0.6, lobe.retro
@@ -225,7 +230,7 @@ def find_lobe(
     both = np.concatenate([wi, mirrored(wi, wo[None, :])])
     order = np.argsort(rho)
     best, best_mass, evaluations = Lobe(1.0, 1.0, False, 0), 0.0, 0
-    for retro in (False, True):
+    for retro in around:
         value = np.asarray(integrand(turned(both) if retro else both), dtype=float)
         value = np.abs(value.reshape(len(value), -1)).sum(axis=1)
         evaluations += len(value)

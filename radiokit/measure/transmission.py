@@ -143,13 +143,13 @@ def transmission(
     found = converge(rules(), rtol, atol, smooth=smooth, rounding=rounding)
     method = "slope-space quadrature of refraction"
     budget = max_evaluations - found.evaluations - spent
-    if (not found.converged or missed(found, scan) > 0) and budget > 4 * GK21:
+    if (not found.converged or (scan is not None and missed(found, *scan) > 0)) and budget > 4 * GK21:
         other_way = hemisphere(flipped, wo=direction, smooth=smooth, max_evaluations=budget, **options)
         spent += other_way.evaluations
         if other_way.converged or np.all(other_way.error <= found.error):
             spent += found.evaluations - other_way.evaluations
             found, method = other_way, f"{other_way.method}, mirrored"
-    lost = missed(found, scan)
+    lost = 0.0 if scan is None else missed(found, *scan)
     if lost > 0:
         note = "a scan of the hemisphere found mass that the rules missed"
         found = replace(found, error=np.maximum(found.error, 2 * lost), converged=False, note=note)
