@@ -65,6 +65,9 @@ STEEPNESS = 0.01 * float(np.finfo(float).eps)
 THIN = 0.08
 """Lobes whose width is a smaller share of their length get panels of azimuth of their own."""
 
+STEEP = 0.5
+"""cosθo above which they do: a grazing lobe is long in slope without being so on the sphere."""
+
 LOOK = 512
 """Points at which the shape of a smooth lobe is looked at, where it may be long and narrow."""
 
@@ -151,7 +154,8 @@ def hemisphere(
         elif not symmetric:
             ridge = _scan(integrand, wo, core, LOOK).ridge
             spent += LOOK
-    cut = cut or (ridge is not None and ridge.ratio < THIN)
+    steep = wo[2] > STEEP and ridge is not None and ridge.ratio < THIN
+    cut = cut or steep
     sizes = SPLIT_SIZES if cut else SLOPE_SIZES
 
     def rule(n: tuple[int, int], factor: float) -> tuple[FloatArray, FloatArray]:
