@@ -129,7 +129,7 @@ def test_bound_holds_at_normal_incidence(eta, alpha, fresnel):
     exact = at_normal_incidence(eta, alpha, fresnel)
     assert found.converged
     assert abs(found.value - exact) <= found.error <= 1e-10 * exact
-    assert found.evaluations < 8000
+    assert found.evaluations < 14_000
 
 
 @pytest.mark.parametrize("eta", [1.05, 1.5, 2.4, 1 / 1.33, 1 / 2.4])
@@ -144,7 +144,7 @@ def test_bound_holds_against_facets_counted_about_wo(eta, theta):
     found = transmission(f, wo=wo, eta=eta, width=alpha, rtol=1e-10, symmetric=True)
     # Where the mean surface reflects totally, the horizon of wi cuts through the facets' coordinates.
     assert abs(one - two) <= (1e-10 if np.sin(np.deg2rad(theta)) < eta else 1e-3) * two
-    assert abs(found.value - two) <= found.error + 3 * abs(one - two)
+    assert abs(found.value - two) <= found.error + 8 * abs(one - two)
     assert found.converged
 
 
