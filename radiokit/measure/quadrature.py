@@ -65,6 +65,9 @@ STEEPNESS = 0.01 * float(np.finfo(float).eps)
 THIN = 0.08
 """Lobes whose width is a smaller share of their length get panels of azimuth of their own."""
 
+RULES = 130_000
+"""Evaluations that product rules may always use; beyond it, a quarter of the budget."""
+
 STEEP = 0.5
 """cosθo above which they do: a grazing lobe is long in slope without being so on the sphere."""
 
@@ -165,13 +168,14 @@ def hemisphere(
 
     def rules() -> Iterator[RuleSum]:
         used = spent
+        most = min(max_evaluations, max(RULES, max_evaluations // 4))  # the rest is for refinement
         for k, (n, factor) in enumerate(zip(sizes, WIDTHS, strict=False)):
             least = (1.5 if cut else 1.0) * sides * n[0] * n[1]
-            if k > 2 and used + least > max_evaluations:
+            if k > 2 and used + least > most:
                 return
             wi, weight = rule(n, factor)
             used += len(wi)
-            if k > 2 and used > max_evaluations:
+            if k > 2 and used > most:
                 return
             yield apply_rule(integrand, wi, weight)
 
