@@ -166,7 +166,9 @@ def test_bound_holds_and_reaches_eight_digits(name, theta, record_property):
     assert doubt < 2e-9 * exact
     for known in (width, None):
         found = hemisphere(lambda w: f(w, wo), wo=wo, width=known)
-        record_property("black box" if known is None else "known", (found.evaluations, found.error / exact))
+        record_property(
+            "black box" if known is None else "known", (int(found.evaluations), float(found.error / exact))
+        )
         assert found.converged
         assert abs(found.value - exact) <= found.error + doubt
         assert found.error <= 1e-8 * exact
