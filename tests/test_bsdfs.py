@@ -24,6 +24,7 @@ from radiokit.contracts.albedo import albedo, directional_albedo
 from radiokit.contracts.bsdf import bsdf, list_bsdfs
 from radiokit.contracts.parameters import parameters_of
 from radiokit.contracts.scalar import ScalarBSDF
+from radiokit.faces.stability.grid import hard_pairs, worst_ulps
 from radiokit.facts.directions import half_vector, reflect, spherical_to_cartesian, unit
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
@@ -32,7 +33,6 @@ from radiokit.measure.passes import run
 from radiokit.measure.proof import proved_zero
 from radiokit.measure.quadrature import hemisphere
 from radiokit.measure.statistics import sidak, z_test
-from radiokit.measure.twin import scaled_ulps
 
 
 @dataclass(frozen=True)
@@ -153,33 +153,6 @@ def test_a_model_without_a_row_would_be_noticed():
 
 
 # Kernel against twin
-
-ANGLES = np.radians([0.0, 1e-7, 30.0, 60.0, 89.0, 89.9999])
-
-
-def hard_pairs(f: Any, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """Return pairs above the horizon: normal, grazing, exact and nearly exact mirror pairs, random ones."""
-    width = f.lobe_width() or 1.0
-    found = []
-    for theta_o in ANGLES:
-        wo = spherical_to_cartesian(theta_o, 0.4)
-        found += [(spherical_to_cartesian(t, phi), wo) for t in ANGLES for phi in (0.4, 1.3, 0.4 + np.pi)]
-        found.append((reflect(wo), wo))
-        for slope in (0.1 * width, width, 10.0 * width):
-            for turn in (0.0, 2.0):
-                h = unit([slope * np.cos(turn), slope * np.sin(turn), 1.0])
-                found.append((reflect(wo, h), wo))
-    for _ in range(20):
-        found.append(tuple(unit(np.abs(v) * [rng.choice([-1, 1]), 1, 1]) for v in rng.normal(size=(2, 3))))
-    wi, wo = (np.array(side) for side in zip(*found, strict=True))
-    above = wi[:, 2] > 0
-    return wi[above], wo[above]
-
-
-def worst_ulps(kernel: Any, twin: Any, wi: np.ndarray, wo: np.ndarray) -> float:
-    exact = [twin.evaluate(*pair) for pair in zip(wi, wo, strict=True)]
-    condition = [twin.condition(*pair) for pair in zip(wi, wo, strict=True)]
-    return float(np.max(scaled_ulps(kernel(wi, wo), exact, condition)))
 
 
 @cases("ordinary", "hard")

@@ -101,6 +101,12 @@ class Twin:
                 return mpmath.mpf(0)  # rounding noise that shrinks with the precision
         raise RadiokitError(f"no {digits} digits of {self.expression} at {values}", values=values)
 
+    def rough(self, wi: npt.ArrayLike, wo: npt.ArrayLike, precision: int) -> mpmath.mpf:
+        """Return the value for one pair as it comes out with so many digits, however many of them are right."""
+        numbers = self._numbers(_components(wi, wo))
+        with working_precision(precision):
+            return self._real(*numbers)
+
     def condition(self, wi: npt.ArrayLike, wo: npt.ArrayLike, digits: int = 20) -> float:
         """Return the relative condition number Σ|x ∂f/∂x| / |f| for one pair of directions (3,)."""
         return self.condition_at(*_components(wi, wo), digits=digits)
