@@ -102,7 +102,7 @@ class Twin:
         raise RadiokitError(f"no {digits} digits of {self.expression} at {values}", values=values)
 
     def rough(self, wi: npt.ArrayLike, wo: npt.ArrayLike, precision: int) -> mpmath.mpf:
-        """Return the value for one pair as it comes out with so many digits, however many of them are right."""
+        """Return the value for one pair as it comes out with so many digits, right or not."""
         numbers = self._numbers(_components(wi, wo))
         with working_precision(precision):
             return self._real(*numbers)

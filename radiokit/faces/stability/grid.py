@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import itertools
 from collections.abc import Iterable
 from typing import Any
@@ -30,7 +29,7 @@ Pairs = list[tuple[FloatArray, FloatArray]]
 
 
 def hard_pairs(f: BSDF, rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:
-    """Return pairs above the horizon: normal, grazing, retro, exact and nearly exact mirror pairs, random ones.
+    """Return pairs above the horizon: normal, grazing, retro, exact and nearly mirror pairs, random ones.
 
     Where light passes they go round all four combinations of sides, and beside the mirror pairs stand those
     of refraction: exact, by tilted facets, and near the critical angle.
@@ -128,10 +127,8 @@ def _extreme_values(
         live = [name for name in declared if base[name] is not None]
         found += [{**base, name: end} for name in live for end in ends[name]]
         if len(live) == 2:
-            found += [
-                base | dict(zip(live, corner, strict=True))
-                for corner in itertools.product(*map(ends.get, live))
-            ]  # type: ignore[arg-type]
+            corners = itertools.product(*(ends[name] for name in live))
+            found += [base | dict(zip(live, corner, strict=True)) for corner in corners]
     first = next(iter(bases.values()))
     for name in declared:
         if all(base[name] is None for base in bases.values()):

@@ -62,7 +62,7 @@ class Examined:
 
     @property
     def ok(self) -> bool:
-        """Whether the kernel is finite and within the limit everywhere, and the twin has a value everywhere."""
+        """Whether the kernel is finite and within the limit, and the twin has a value, everywhere."""
         return self.worst <= LIMIT and not self.nonfinite and not self.undecided
 
 
@@ -86,7 +86,7 @@ class ModelStability:
 
     @property
     def outcome(self) -> Outcome:
-        """``holds`` if every set is within the limit, ``violated`` if one is not, or else ``inconclusive``."""
+        """``holds`` if all sets are within the limit, ``violated`` if one is not, else ``inconclusive``."""
         if any(found.worst > LIMIT or found.nonfinite for found in self.sets):
             return Outcome.VIOLATED
         return Outcome.HOLDS if all(found.ok for found in self.sets) else Outcome.INCONCLUSIVE
@@ -181,8 +181,8 @@ def examine(f: BSDF, *, dense: bool = False) -> Examined:
     for i, o in zip(wi, wo, strict=True):
         try:
             truths.append(_truth(twin, i, o))
-        except (RadiokitError, ZeroDivisionError, TypeError, ValueError) as error:
-            undecided.append(f"{type(error).__name__} at wi = {i.tolist()}, wo = {o.tolist()}")
+        except (RadiokitError, ArithmeticError, TypeError, ValueError) as problem:
+            undecided.append(f"{type(problem).__name__} at wi = {i.tolist()}, wo = {o.tolist()}")
             truths.append(None)
     known = np.array([k for k, truth in enumerate(truths) if truth is not None], dtype=int)
     raw = np.array([float(scaled_ulps(values[k], truths[k], 1.0)) for k in known])
@@ -223,7 +223,7 @@ def _condition(twin: Twin, wi: FloatArray, wo: FloatArray) -> float:
     """Return the condition number; infinite, which excuses nothing, where there is none."""
     try:
         return twin.condition(wi, wo)
-    except (RadiokitError, ZeroDivisionError):
+    except (RadiokitError, ArithmeticError):
         return float("inf")
 
 
