@@ -12,7 +12,16 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["FLOATS", "Chart", "Numbers", "digits", "refracted_chart", "slope_chart", "sphere_chart", "turned_chart"]
+__all__ = [
+    "Chart",
+    "Numbers",
+    "digits",
+    "floats",
+    "refracted_chart",
+    "slope_chart",
+    "sphere_chart",
+    "turned_chart",
+]
 
 Point = tuple[Any, Any, Any, Any]
 """Components along the plane of incidence, across it and up, and the solid angle per unit of s and x."""
@@ -37,10 +46,12 @@ class Numbers:
     pi: Any
 
 
-FLOATS = Numbers(
-    np.sin, np.cos, np.sinh, np.cosh, np.arcsinh, np.arctan2, np.sqrt, np.exp,
-    np.minimum, np.maximum, np.where, np.longdouble, np.arctan2(np.longdouble(0), np.longdouble(-1)),
-)  # fmt: skip
+def floats(kind: type[Any]) -> Numbers:
+    """Return the functions of NumPy, for arrays of ``numpy.float64`` or ``numpy.longdouble``."""
+    return Numbers(
+        np.sin, np.cos, np.sinh, np.cosh, np.arcsinh, np.arctan2, np.sqrt, np.exp,
+        np.minimum, np.maximum, np.where, kind, np.arctan2(kind(0), kind(-1)),
+    )  # fmt: skip
 
 
 def digits() -> Numbers:

@@ -19,8 +19,8 @@ __all__ = ["Lines", "boundaries", "float_function"]
 Place = Callable[[int, Any, Any], Any]
 """Values of all boundaries (G, ...) at a panel, azimuths and radii."""
 
-_RADII, _AZIMUTHS = 193, 193
-_BISECTIONS = 62
+_RADII, _AZIMUTHS = 97, 96
+_BISECTIONS = 54
 
 
 def boundaries(twin: Twin) -> tuple[sympy.Expr, ...]:
@@ -49,7 +49,7 @@ def boundaries(twin: Twin) -> tuple[sympy.Expr, ...]:
 def float_function(
     expressions: tuple[sympy.Expr, ...], symbols: tuple[sympy.Symbol, ...]
 ) -> Callable[..., list[Any]]:
-    """Return expressions as a function of arrays of extended floats; a Dirac delta is 0."""
+    """Return expressions as a function of arrays of floats; a Dirac delta is 0."""
     import sympy
 
     def extreme(pick: Any, *values: Any) -> Any:
@@ -58,7 +58,7 @@ def float_function(
     def root(value: Any) -> Any:
         value = np.asarray(value)
         if value.dtype.kind != "c" and np.any(value < 0):
-            value = value.astype(np.clongdouble)
+            value = value.astype(np.result_type(value, np.complex64))
         return np.sqrt(value)
 
     def through_scipy(name: str) -> Any:
@@ -70,7 +70,7 @@ def float_function(
         return function
 
     names = {
-        "DiracDelta": lambda *_: np.longdouble(0),
+        "DiracDelta": lambda *_: 0.0,
         "largest": lambda *values: extreme(np.maximum, *values),
         "smallest": lambda *values: extreme(np.minimum, *values),
         "sqrt": root,
@@ -83,18 +83,18 @@ def float_function(
 
 
 class Lines:
-    """The zeros of some functions of (panel, s, x) along x, and the azimuths at which their number changes."""
+    """The zeros of functions of (panel, s, x) along x, and the azimuths at which their number changes."""
 
     def __init__(self, place: Place, count: int, panels: int) -> None:
         self._place, self._panels = place, panels
         self._live: list[int] = list(range(count))
         # The ends are looked at from close by: a zero there is a line's end.
-        self._x = np.concatenate([[1e-9], np.linspace(0, 1, _RADII)[1:-1], [1 - 1e-9]]).astype(np.longdouble)
+        self._x = np.concatenate([[1e-9], np.linspace(0, 1, _RADII)[1:-1], [1 - 1e-9]])
         self.breaks: list[list[float]] = [[] for _ in range(panels)]
         if not count:
             return
-        s = (np.arange(_AZIMUTHS, dtype=np.longdouble) + 0.5) / _AZIMUTHS
-        s = np.concatenate([[np.longdouble(1e-9)], s, [np.longdouble(1 - 1e-9)]])
+        s = (np.arange(_AZIMUTHS) + 0.5) / _AZIMUTHS
+        s = np.concatenate([[1e-9], s, [1 - 1e-9]])
         signs = [self._signs(panel, s[:, None], self._x[None, :]) for panel in range(panels)]
         self._live = [g for g in range(count) if any(each[g].any() and not each[g].all() for each in signs)]
         for panel in range(panels):
@@ -122,9 +122,9 @@ class Lines:
         return bool(self._live)
 
     def intervals(self, panel: int, s: Any) -> list[tuple[int, Any, Any]]:
-        """Return (index of s, start, end) of the pieces of [0, 1] between the zeros, for each of ``s`` (N,)."""
+        """Return (index of s, start, end) of the pieces of [0, 1] between zeros, for each of ``s`` (N,)."""
         if not self._live:
-            return [(k, np.longdouble(0), np.longdouble(1)) for k in range(len(s))]
+            return [(k, 0.0, 1.0) for k in range(len(s))]
         signs = self._signs(panel, s[:, None], self._x[None, :])
         cuts: list[list[Any]] = [[] for _ in s]
         for g in self._live:
@@ -140,7 +140,7 @@ class Lines:
                 cuts[row].append(x)
         found = []
         for k, roots in enumerate(cuts):
-            ends = [np.longdouble(0), *_apart(roots), np.longdouble(1)]
+            ends = [0.0, *_apart(roots), 1.0]
             found += [(k, a, b) for a, b in itertools.pairwise(ends)]
         return found
 
