@@ -29,7 +29,7 @@ Point = tuple[Any, Any, Any, Any]
 
 @dataclass(frozen=True)
 class Numbers:
-    """The functions of one kind of number: arrays of extended floats, or multiple precision."""
+    """The functions of one kind of number: arrays of floats, or multiple precision."""
 
     sin: Callable[[Any], Any]
     cos: Callable[[Any], Any]
@@ -46,11 +46,11 @@ class Numbers:
     pi: Any
 
 
-def floats(kind: type[Any]) -> Numbers:
-    """Return the functions of NumPy, for arrays of ``numpy.float64`` or ``numpy.longdouble``."""
+def floats() -> Numbers:
+    """Return the functions of NumPy, for arrays of floats."""
     return Numbers(
         np.sin, np.cos, np.sinh, np.cosh, np.arcsinh, np.arctan2, np.sqrt, np.exp,
-        np.minimum, np.maximum, np.where, kind, np.arctan2(kind(0), kind(-1)),
+        np.minimum, np.maximum, np.where, np.float64, np.pi,
     )  # fmt: skip
 
 

@@ -24,6 +24,7 @@ __all__ = ["Examined", "ModelStability", "chosen_models", "examine", "model_stab
 
 _DIGITS = 50
 _FEW, _MORE = 60, 130  # digits of two evaluations that usually agree, so that thousands are not needed
+_TINY = 1e-290  # below it a kernel may give 0, since exp(x) is 0 for x < -708
 _THIN = 2  # of the ordinary pairs one in so many, unless the grid is dense
 
 
@@ -64,6 +65,12 @@ class Examined:
     def ok(self) -> bool:
         """Whether the kernel is finite and within the limit, and the twin has a value, everywhere."""
         return self.worst <= LIMIT and not self.nonfinite and not self.undecided
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the findings as JSON-ready data; an infinite error is text."""
+        data = {name: getattr(self, name) for name in self.__dataclass_fields__}
+        result: dict[str, Any] = jsonable(data | {"ok": self.ok})
+        return result
 
 
 @dataclass(frozen=True)
@@ -185,13 +192,13 @@ def examine(f: BSDF, *, dense: bool = False) -> Examined:
             undecided.append(f"{type(problem).__name__} at wi = {i.tolist()}, wo = {o.tolist()}")
             truths.append(None)
     known = np.array([k for k, truth in enumerate(truths) if truth is not None], dtype=int)
-    raw = np.array([float(scaled_ulps(values[k], truths[k], 1.0)) for k in known])
+    raw = np.array([_ulps(values[k], truths[k]) for k in known])
     worst, where, condition = -1.0, int(known[0]) if len(known) else 0, 0.0
     for k, error in sorted(zip(known.tolist(), raw.tolist(), strict=True), key=lambda item: -item[1]):
         if error <= worst:
             break
         here = _condition(twin, wi[k], wo[k])
-        scaled = float(scaled_ulps(values[k], truths[k], here))
+        scaled = _ulps(values[k], truths[k], here)
         if scaled > worst:
             worst, where, condition = scaled, k, here
     truth = truths[where]
@@ -208,6 +215,13 @@ def examine(f: BSDF, *, dense: bool = False) -> Examined:
         undecided=tuple(undecided),
         seconds=time.perf_counter() - start,
     )
+
+
+def _ulps(value: float, truth: Any, condition: float = 1.0) -> float:
+    """Return the error in ulps over the condition number; none where value and truth are next to nothing."""
+    if abs(value) < _TINY and abs(truth) < _TINY:
+        return 0.0
+    return float(scaled_ulps(value, truth, condition))
 
 
 def _truth(twin: Twin, wi: FloatArray, wo: FloatArray) -> Any:

@@ -91,5 +91,5 @@ def show_albedos(rows: Sequence[AlbedoRow]) -> None:
     bad = sum(row.outcome is Outcome.VIOLATED for row in rows)
     write(
         f"{held} of {len(rows)} albedos are right to {RTOL:g} and within their bounds; {bad} are not; "
-        f"{wide} are within bounds that are, as they say, wider; {len(rows) - held - wide - bad} have no truth"
+        f"{wide} are within bounds that, as they say, are wider; {len(rows) - held - wide - bad} lack a truth"
     )

@@ -51,22 +51,20 @@ def _gauss(n: int) -> tuple[list[Any], list[Any]]:
 
 
 @functools.lru_cache(maxsize=256)
-def _rounded(n: int, kind: Any) -> tuple[Any, Any]:
-    """Return the same as arrays of floats of one kind."""
-    from mpmath import mp
-
-    nodes, weights = (np.array([kind(mp.nstr(v, 25)) for v in column]) for column in _gauss(n))
+def _rounded(n: int) -> tuple[Any, Any]:
+    """Return the same as arrays of floats."""
+    nodes, weights = (np.array([float(v) for v in column]) for column in _gauss(n))
     return nodes, weights
 
 
-def _nodes(rule: Rule, n: int, kind: type[Any] | None) -> tuple[Any, Any]:
+def _nodes(rule: Rule, n: int, precise: bool) -> tuple[Any, Any]:
     """Return nodes and weights on [0, 1], moved to its ends where the rule is eased."""
-    x, w = _gauss(n) if kind is None else _rounded(n, kind)
+    x, w = _gauss(n) if precise else _rounded(n)
     if not rule.eased:
         return x, w
     moved = [v * v * v * (10 - 15 * v + 6 * v * v) for v in x]
     weights = [30 * (v * (1 - v)) ** 2 * b for v, b in zip(x, w, strict=True)]
-    return (moved, weights) if kind is None else (np.array(moved), np.array(weights))
+    return (moved, weights) if precise else (np.array(moved), np.array(weights))
 
 
 class Side:
@@ -93,20 +91,20 @@ class Side:
         radius = n.sqrt(x * x + y * y)
         return [x, y, z], *((x / radius, y / radius) if radius else (n.number(1), n.number(0)))
 
-    def _arguments(self, panel: int, s: Any, x: Any, far: int, kind: type[Any]) -> tuple[list[Any], Any]:
+    def _arguments(self, panel: int, s: Any, x: Any, far: int) -> tuple[list[Any], Any]:
         """Return what the twin takes, as arrays of floats, and the solid angle per unit of s and x."""
-        numbers = floats(kind)
+        numbers = floats()
         wo, c, d = self._frame(numbers)
         along, across, up, area = self.chart.azimuth(numbers, panel, s)(x)
         across = far * across
         parts = np.broadcast_arrays(c * along - d * across, d * along + c * across, up, area)
-        return [*parts[:3], *wo, *map(kind, self.parameters)], parts[3]
+        return [*parts[:3], *wo, *self.parameters], parts[3]
 
     def _boundaries(self, far: int) -> Any:
         function = float_function(self.edges, self.symbols) if self.edges else None
 
         def place(panel: int, s: Any, x: Any) -> Any:
-            arguments, area = self._arguments(panel, s, x, far, np.float64)
+            arguments, area = self._arguments(panel, s, x, far)
             found = function(*arguments) if function else []
             return np.array([np.broadcast_to(np.real(g), area.shape) for g in found])
 
@@ -115,32 +113,33 @@ class Side:
     def _pieces(self, far: int, rule: Rule) -> Iterator[tuple[int, Any, list[tuple[int, Any, Any]], Any]]:
         """Yield panel, azimuths, intervals of x, and the ends of s, for each cut of s."""
         for panel in range(self.chart.panels):
-            for low, high in itertools.pairwise([0.0, *self.lines[far].breaks[panel], 1.0]):
+            cuts = [] if rule.midpoints else self.lines[far].breaks[panel]
+            for low, high in itertools.pairwise([0.0, *cuts, 1.0]):
                 if rule.midpoints:
                     s = (np.arange(rule.azimuths) + 0.5) / rule.azimuths
                 else:
-                    s = low + (high - low) * _nodes(rule, rule.azimuths, np.float64)[0]
+                    s = low + (high - low) * _nodes(rule, rule.azimuths, False)[0]
                 yield panel, s, self.lines[far].intervals(panel, s), (low, high)
 
     def periodic(self, far: int) -> bool:
         """Whether midpoints of azimuth will do: one panel of half a turn that nothing cuts."""
         return self.chart.whole and not any(self.lines[far].breaks)
 
-    def planned(self, far: int, rule: Rule, kind: type[Any]) -> tuple[float, int]:
+    def planned(self, far: int, rule: Rule) -> tuple[float, int]:
         """Return the integral in floats, and the number of nodes."""
         function = float_function((self.twin.expression,), self.symbols)
-        x, w = _nodes(rule, rule.radii, kind)
-        total, count = kind(0), 0
+        x, w = _nodes(rule, rule.radii, False)
+        total, count = 0.0, 0
         for panel, s, intervals, (low, high) in self._pieces(far, rule):
             if rule.midpoints:
-                places, w_s = (np.arange(rule.azimuths) + kind(0.5)) / rule.azimuths, np.ones(len(s)) / len(s)
+                places, w_s = (np.arange(rule.azimuths) + 0.5) / rule.azimuths, np.ones(len(s)) / len(s)
             else:
-                places, w_s = _nodes(rule, rule.azimuths, kind)
+                places, w_s = _nodes(rule, rule.azimuths, False)
                 places, w_s = low + (high - low) * places, (high - low) * w_s
             index, a, b = (np.array(column) for column in zip(*intervals, strict=True))
             radius = a[:, None] + (b - a)[:, None] * x
             with np.errstate(all="ignore"):
-                arguments, area = self._arguments(panel, places[index][:, None], radius, far, kind)
+                arguments, area = self._arguments(panel, places[index][:, None], radius, far)
                 value = np.real(np.broadcast_to(function(*arguments)[0], area.shape))
                 weight = area * np.abs(arguments[2]) * ((b - a)[:, None] * w) * w_s[index][:, None]
                 total += np.sum(np.where(weight == 0, 0, value * weight))
@@ -155,7 +154,7 @@ class Side:
         function = compiled(self.twin.expression, self.symbols)
         parameters = [mp.mpf(v) for v in self.parameters]
         wo, c, d = self._frame(n)
-        x, w = _nodes(rule, rule.radii, None)
+        x, w = _nodes(rule, rule.radii, True)
         terms = []
         for panel, _, intervals, (low, high) in self._pieces(far, rule):
             if rule.midpoints:
@@ -163,7 +162,7 @@ class Side:
                 w_s = [mp.mpf(1) / rule.azimuths] * rule.azimuths
             else:
                 length = mp.mpf(high) - low
-                places, w_s = ([length * v for v in vs] for vs in _nodes(rule, rule.azimuths, None))
+                places, w_s = ([length * v for v in vs] for vs in _nodes(rule, rule.azimuths, True))
                 places = [low + v for v in places]
             points = [self.chart.azimuth(n, panel, s) for s in places]
             for index, a, b in intervals:

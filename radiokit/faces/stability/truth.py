@@ -1,6 +1,6 @@
 """Truth: the directional albedo of a twin to thirty digits, without a kernel and without a rule in float64.
 
-Extended floats only plan: which chart, and how many nodes. The integral itself is worked out twice, with
+Floats only plan: which chart, and how many nodes. The integral itself is worked out twice, with
 multiple precision, at two resolutions, and counts only where they agree.
 """
 
@@ -29,6 +29,10 @@ NODES = 24_000
 """Values of the twin that one albedo may cost, unless the caller allows more."""
 
 _PLANNED = 4e-13
+_EVEN = 1e-10
+_ROUGHLY = 1e-3
+_CHEAP = 2000  # nodes below which no other chart is looked at
+_LOOK = Rule(128, 48, eased=False, midpoints=True)
 _RADII = (8, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128, 160)
 _AZIMUTHS = (1, 2, 4, 6, 8, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128, 160)
 
@@ -59,49 +63,60 @@ class Truth:
 
 @dataclass(frozen=True)
 class _Plan:
-    """Rules of rising size on either side of the plane of incidence, and the cost of the first two."""
+    """Rules of rising size, on one or both sides of the plane of incidence; the cost of the first two."""
 
     side: Side
-    near: tuple[Rule, ...]
-    far: tuple[Rule, ...] | None
+    both: bool
+    rules: tuple[Rule, ...]
     cost: int
+    value: float
+
+    def integral(self, k: int) -> tuple[Any, int]:
+        """Return the integral by rule number ``k``, and the number of nodes."""
+        value, count = self.side.integral(1, self.rules[k])
+        if not self.both:
+            return 2 * value, count
+        other, more = self.side.integral(-1, self.rules[k])
+        return value + other, count + more
 
 
-def _rules(side: Side, far: int, eased: bool, most: int, kind: type[Any]) -> tuple[tuple[Rule, ...], float]:
-    """Return the smallest rule with which two larger ones agree in floats, what follows, and the value."""
-    midpoints = side.periodic(far)
+class _VanishesError(NoTruthError):
+    """Nothing but zeros was seen."""
+
+
+def _plan(side: Side, eased: bool, most: int) -> _Plan:
+    """Return the smallest rule with which two larger ones agree in floats, and what follows."""
+    midpoints = side.periodic(1) and side.periodic(-1)
     azimuths = _AZIMUTHS if midpoints else _AZIMUTHS[3:]
+    # Mirrored nodes give the same sums, but for rounding, if f is even: also where they have not converged.
+    look = Rule(24, 16, eased, midpoints)
+    (one, _), (other, _) = (side.planned(far, look) for far in (1, -1))
+    both = not abs(one - other) <= _EVEN * abs(one)
+
+    def at(rule: Rule) -> tuple[float, int]:
+        value, cost = side.planned(1, rule)
+        if not both:
+            return 2 * value, cost
+        other, more = side.planned(-1, rule)
+        return value + other, cost + more
 
     def first(rules: list[Rule], what: str) -> tuple[int, float]:
         found: list[float] = []
         for k, rule in enumerate(rules):
-            value, cost = side.planned(far, rule, kind)
+            value, cost = at(rule)
             found.append(value)
-            # Three that agree: two may do so by chance, and zeros say nothing before the last.
+            # Three that agree: two may do so by chance.
             if k > 1 and value and max(abs(v - value) for v in found[-3:]) <= _PLANNED * abs(value):
                 return k - 2, value
-            if cost > 8 * most:
+            if cost > 2 * most:
                 break
-        if not any(found):
-            return len(found) // 2, 0.0
-        raise NoTruthError(f"{what} do not converge")
+        raise NoTruthError(f"{what} do not converge") if any(found) else _VanishesError("zero")
 
     j, _ = first([Rule(48, n, eased, midpoints) for n in azimuths], "azimuths")
     i, value = first([Rule(n, azimuths[j], eased, midpoints) for n in _RADII], "radii")
     steps = ((min(i + k, len(_RADII) - 1), min(j + k, len(azimuths) - 1)) for k in range(3))
-    return tuple(Rule(_RADII[r], azimuths[a], eased, midpoints) for r, a in steps), value
-
-
-def _plan(side: Side, eased: bool, most: int, kind: type[Any]) -> _Plan:
-    near, value = _rules(side, 1, eased, most, kind)
-    cost = sum(side.planned(1, rule, kind)[1] for rule in near[:2])
-    other = value
-    for rule in near[:2]:
-        other = side.planned(-1, rule, kind)[0]
-    if abs(value - other) <= 8 * _PLANNED * abs(value):
-        return _Plan(side, near, None, cost)
-    far, _ = _rules(side, -1, eased, most, kind)
-    return _Plan(side, near, far, cost + sum(side.planned(-1, rule, kind)[1] for rule in far[:2]))
+    rules = tuple(Rule(_RADII[r], azimuths[a], eased, midpoints) for r, a in steps)
+    return _Plan(side, both, rules, sum(at(rule)[1] for rule in rules[:2]), value)
 
 
 def _charts(f: BSDF, wo: FloatArray, through: bool) -> list[Chart]:
@@ -171,6 +186,8 @@ def _hemisphere(
     f: BSDF, twin: Twin, wo: FloatArray, through: bool, eta: float, most: int
 ) -> tuple[Any, float, int, str]:
     """Return the integral over one hemisphere, the difference of two resolutions, the cost and the chart."""
+    from mpmath import mp
+
     charts, scale = _charts(f, wo, through), 1.0
     if through:
         scale = eta * eta
@@ -178,33 +195,42 @@ def _hemisphere(
             cos_o, sin_o = float(wo[2]), math.hypot(*wo[:2])
             charts.insert(0, refracted_chart(cos_o, sin_o, eta, f.lobe_width() or 1.0))
     best: _Plan | None = None
-    reasons = []
-    for kind, cut, chart in itertools.product((np.float64, np.longdouble), (False, True), charts):
-        if best is not None and (best.cost <= most // 4 or kind is np.longdouble):
+    reasons, seen, zeros = [], 0, 0
+    rough = []
+    for cut, chart in itertools.product((False, True), charts):
+        if best is not None and best.cost <= _CHEAP:
             break
         side = Side(twin, wo, chart, scale, cut=cut)
         if cut and not side.kinked:
             continue
+        if not cut:
+            rough.append(sum(side.planned(far, _LOOK)[0] for far in (1, -1)))
         for eased in (False, True):
+            seen += 1
             try:
-                plan = _plan(side, eased, most, kind)
+                plan = _plan(side, eased, most)
             except NoTruthError as problem:
+                zeros += isinstance(problem, _VanishesError)
                 reasons.append(f"{chart.name}: {problem}")
                 continue
             if best is None or plan.cost < best.cost:
                 best = plan
             break
     if best is None:
+        if zeros == seen:
+            return mp.mpf(0), 0.0, 0, "zero at all nodes"
         raise NoTruthError("; ".join(dict.fromkeys(reasons)))
     name = best.side.chart.name
+    # A narrow lobe may stand between the nodes of angles: those made for it, first in the list, would see it.
+    if abs(best.value - rough[0]) > _ROUGHLY * abs(rough[0]):
+        raise NoTruthError(f"{name} give {best.value:.3g}, and {charts[0].name} about {rough[0]:.3g}")
     if best.cost > most:
         raise NoTruthError(f"{name}: {best.cost} nodes would be needed, and {most} are allowed")
     values, spent = [], 0
-    for k in range(3):
-        value, count = best.side.integral(1, best.near[k])
-        other, more = (value, 0) if best.far is None else best.side.integral(-1, best.far[k])
-        values.append(value + other)
-        spent += count + more
+    for k in range(len(best.rules)):
+        value, count = best.integral(k)
+        values.append(value)
+        spent += count
         if k:
             off = float(abs(values[k] - values[k - 1]))
             if off <= AGREE * float(abs(values[k])):
