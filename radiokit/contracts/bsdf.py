@@ -176,6 +176,31 @@ class BSDF(ABC):
             return {}
         return {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
 
+    __array_ufunc__: ClassVar[None] = None
+    """NumPy's numbers and arrays leave ``number * f`` to f."""
+
+    def __mul__(self, factor: Any) -> BSDF:
+        """Return factor · f, see ``scaled``.
+
+        >>> 0.5 * bsdf("lambert") + 0.5 * bsdf("mirror")
+        0.5*Lambert(reflectance=1.0) + 0.5*Mirror(reflectance=1.0)
+        """
+        from radiokit.contracts.mixture import multiplied
+
+        return NotImplemented if isinstance(factor, BSDF) else multiplied(self, factor)
+
+    __rmul__ = __mul__
+
+    def __add__(self, other: Any) -> BSDF:
+        """Return the sum of two BSDFs, see ``mixture``."""
+        from radiokit.contracts.mixture import added
+
+        return added(self, other) if isinstance(other, BSDF) else NotImplemented
+
+    def __radd__(self, other: Any) -> BSDF:
+        """Return f for 0 + f, with which ``sum`` begins."""
+        return self if isinstance(other, int) and other == 0 else NotImplemented
+
     def __call__(self, wi: npt.ArrayLike, wo: npt.ArrayLike) -> Any:
         """Return f(wi, wo) [sr⁻¹] for checked directions of any broadcastable shape ``(..., 3)``.
 
