@@ -60,6 +60,7 @@ class Conductor(ScalarBSDF):
     """
 
     name = "conductor"
+    kind = "delta"
     SOURCE = SOURCE
     EXAMPLES = ({}, {"eta": 1.0728, "k": 6.7839}, {"eta": 1.5, "k": 0.0})
 

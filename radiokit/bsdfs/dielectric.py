@@ -76,6 +76,7 @@ class Dielectric(ScalarBSDF):
     """
 
     name = "dielectric"
+    kind = "transmission"
     SOURCE = SOURCE
     EXAMPLES = ({}, {"eta": 1 / 1.5}, {"eta": 1.0}, {"eta": 2.42})
 

@@ -88,6 +88,7 @@ class Phong(ScalarBSDF):
     """
 
     name = "phong"
+    kind = "glossy"
     SOURCE = SOURCE
     EXAMPLES = ({}, {"exponent": 1.0}, {"exponent": 1000.0, "reflectance": 0.5})
 

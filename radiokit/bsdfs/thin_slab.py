@@ -78,6 +78,7 @@ class ThinSlab(ScalarBSDF):
     """
 
     name = "thin_slab"
+    kind = "transmission"
     SOURCE = SOURCE
     EXAMPLES = ({}, {"eta": 1.0}, {"eta": 0.75})
 

@@ -6,7 +6,7 @@ import dataclasses
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -21,9 +21,15 @@ if TYPE_CHECKING:
     from radiokit.measure.kernels import Kernel
     from radiokit.measure.twin import Twin
 
-__all__ = ["BSDF", "REGISTRY", "Claims", "DeltaLobe", "FloatArray", "bsdf", "list_bsdfs"]
+__all__ = ["BSDF", "KINDS", "REGISTRY", "Claims", "DeltaLobe", "FloatArray", "Kind", "bsdf", "list_bsdfs"]
 
 FloatArray = npt.NDArray[np.float64]
+
+Kind = Literal["", "diffuse", "glossy", "microfacet", "delta", "transmission", "principled"]
+"""What a model is in one word: a broad lobe, an empirical narrow one, one of facets, a mirror's, one that
+light passes, or many in one for artists. Empty where a model does not say."""
+
+KINDS: tuple[Kind, ...] = get_args(Kind)[1:]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,6 +79,9 @@ class BSDF(ABC):
     SOURCE: ClassVar[Source]
     EXAMPLES: ClassVar[tuple[Mapping[str, Any], ...]] = ({},)
     """Parameters, easy and hard, with which ``radiokit validate`` puts the model before the judges."""
+
+    kind: ClassVar[Kind] = ""
+    """What the model is in one word, for the table of models."""
 
     isotropic: ClassVar[bool] = True
     """Whether f is unchanged by a turn about the normal, and by mirroring at the plane of incidence."""
