@@ -35,10 +35,10 @@ _ROUNDING = 1e-12  # of a sum of weights
 
 @dataclass(frozen=True, kw_only=True)
 class Mixture(BSDF):
-    """Σ w f, of BSDFs f and numbers w ≥ 0: the first sum of the lectures, "mixed" reflection.
+    """Σ w f, of BSDFs f and numbers w ≥ 0: the lecture's mixed reflection.
 
     Its sampler picks a component by its weight with one more uniform number, the last, and its pdf is the sum
-    of theirs: f over that has no more variance than the worst of them. A component's delta lobes stay delta
+    of theirs: no weight is larger than Σ w times the largest of theirs. A component's delta lobes stay delta
     lobes.
 
     It claims what follows from the claims of its components. It is reciprocal if all are, not if exactly one
