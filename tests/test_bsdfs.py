@@ -117,6 +117,97 @@ ROWS = (
         ),
         albedos=tuple(({"alpha": 1.0}, t, ggx_albedo(t)) for t in (0.0, 30.0, 60.0, 89.0, 89.9)),
     ),
+    Row(
+        "phong_original",
+        ordinary=({}, {"exponent": 50.0, "coefficient": 0.8}),
+        hard=(
+            {"exponent": 4.0, "coefficient": 1.0},
+            {"exponent": 1e3},
+            {"exponent": 1e6},
+            {"coefficient": 0.0},
+        ),
+        wrong=(
+            out_of_range("exponent", 0.5, "[1, 1e6]"),
+            out_of_range("coefficient", 1.1, "[0, 1]", spectral=True),
+        ),
+        # Fixed wo: exactly 2π k_s/(n + 1) at normal incidence.
+        albedos=tuple(
+            ({"exponent": n, "coefficient": 0.5}, 0.0, np.pi / (n + 1)) for n in (1.0, 10.0, 1e3, 1e6)
+        ),
+    ),
+    Row(
+        "blinn_phong",
+        ordinary=(
+            {},
+            {"normalization": "n+8"},
+            {"normalization": "n+8", "reflectance": 0.93},
+            {"normalization": "n+2", "exponent": 50.0},
+        ),
+        hard=(
+            {"exponent": 1.0},
+            {"exponent": 1.5, "normalization": "n+8"},
+            {"exponent": 1e3},
+            {"exponent": 1e6, "normalization": "n+8"},
+            {"exponent": 1e6},
+        ),
+        wrong=(
+            out_of_range("exponent", 0.5, "[1, 1e6]"),
+            out_of_range("reflectance", 2.0, "[0, 1]", spectral=True),
+            (
+                {"normalization": "n+1"},
+                "normalization = 'n+1' is not allowed: it must be one of 'exact', 'n+8', 'n+2'",
+            ),
+        ),
+        albedos=(
+            *(({"exponent": n}, 0.0, 1.0) for n in (1.0, 10.0, 1e3, 1e6)),
+            ({"exponent": 10.0, "normalization": "n+8"}, 0.0, 18 * (10 + 2.0**-5) / (12 * 14)),
+            ({"exponent": 10.0, "normalization": "n+2"}, 0.0, (10 + 2.0**-5) / 14),
+        ),
+    ),
+    Row(
+        "ward",
+        ordinary=(
+            {},
+            {"alpha_x": 0.15, "alpha_y": 0.4, "reflectance": 0.7},
+            {"alpha_x": 0.1, "alpha_y": 0.1},
+        ),
+        hard=(
+            {"alpha_x": 1.0, "alpha_y": 1.0},
+            {"alpha_x": 1e-3, "alpha_y": 1e-3},
+            {"alpha_x": 1e-4, "alpha_y": 1e-4},
+        ),
+        wrong=(
+            out_of_range("alpha_x", 0, "[1e-4, 1]"),
+            out_of_range("alpha_y", 2, "[1e-4, 1]"),
+            out_of_range("reflectance", 1.5, "[0, 1]", spectral=True),
+        ),
+    ),
+    Row(
+        "ward_duer",
+        ordinary=({}, {"alpha_x": 0.15, "alpha_y": 0.4, "reflectance": 0.7}),
+        hard=(
+            {"alpha_x": 1.0, "alpha_y": 1.0},
+            {"alpha_x": 1e-3, "alpha_y": 1e-3},
+            {"alpha_x": 1e-4, "alpha_y": 1e-4},
+            {"reflectance": 0.0},
+        ),
+        wrong=(out_of_range("alpha_x", 0, "[1e-4, 1]"), out_of_range("alpha_y", 2, "[1e-4, 1]")),
+    ),
+    Row(
+        "ward_gmd",
+        ordinary=({}, {"alpha_x": 0.15, "alpha_y": 0.4, "reflectance": 0.7}),
+        hard=(
+            {"alpha_x": 1.0, "alpha_y": 1.0},
+            {"alpha_x": 0.5, "alpha_y": 0.2},
+            {"alpha_x": 1e-3, "alpha_y": 1e-3},
+            {"alpha_x": 1e-4, "alpha_y": 1e-4},
+        ),
+        wrong=(out_of_range("alpha_x", 0, "[1e-4, 1]"), out_of_range("alpha_y", 2, "[1e-4, 1]")),
+        albedos=tuple(
+            ({"alpha_x": a, "alpha_y": a}, 0.0, float(1 + a * a * np.expm1(-1 / a**2)))
+            for a in (0.05, 0.5, 1.0)
+        ),
+    ),
 )
 
 
