@@ -37,7 +37,8 @@ SOURCE = Source(
     doi="10.1145/563858.563893",
     equation="the distribution D1 = cosⁿδ; the constants from Giesen (2009), Phong and Blinn-Phong "
     'Normalization Factors ("exact"), and Akenine-Möller, Haines, Hoffman (2008), Real-Time Rendering, 3rd '
-    'edition, section 7.6 ("n+8"); "n+2" is D of Walter et al. (2007), doi:10.2312/EGWR/EGSR07/195-206, equation 30',
+    'edition, section 7.6 ("n+8"); "n+2" is D of Walter et al. (2007), doi:10.2312/EGWR/EGSR07/195-206, '
+    "equation 30",
 )
 
 CONSTANTS: dict[str, Any] = {

@@ -49,8 +49,8 @@ def ward_direction(u0: Any, u1: Any, ox: Any, oy: Any, oz: Any, alpha_x: Any, al
 
     Source: Ward (1992), equations 8 and 9, with the sine and cosine of an angle in place of its tangent.
 
-    >>> [float(c) for c in ward_direction(0.0, 0.0, 0.6, 0.0, 0.8, 0.3, 0.3)]
-    [-0.6, 0.0, 0.8, 1.0]
+    >>> [round(float(c), 12) for c in ward_direction(0.0, 0.5, 0.0, 0.0, 1.0, 0.3, 0.3)]
+    [0.0, 0.0, 1.0, 1.0]
     """
     hx, hy, hz = beckmann_normal(u0, u1, alpha_x, alpha_y)
     wx, wy, wz = reflect(ox, oy, oz, hx, hy, hz)
