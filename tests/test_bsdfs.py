@@ -217,7 +217,7 @@ ROWS = (
         "ashikhmin_shirley",
         ordinary=(
             {},
-            {"exponent_u": 10.0, "exponent_v": 100.0, "f0": 0.5},
+            {"exponent_u": 5.0, "exponent_v": 2000.0, "f0": 0.5},
             {"exponent_u": 1.0, "exponent_v": 1.0, "f0": 0.0, "reflectance": 1.0},
         ),
         hard=(
