@@ -4,7 +4,7 @@ One lobe of the generalised cosine model: (−1, −1, 1) is ``phong``, (1, 1, 1
 light came from, a Cz below 1 turns the lobe to the horizon, and Cx ≠ Cy makes it anisotropic. It is
 reciprocal. The albedo is that of Phong's lobe about C wo times |C wo|ⁿ: it is at most ρ while no
 coefficient exceeds 1 in size, and ρ at normal incidence for Cz = 1. Beyond, it gains: for (−1.2, −1.2,
-0.9) and n = 10 it is 1.4456 at 63.4°.
+0.9) and n = 10 it is 1.4456 at 64.5°.
 """
 
 from __future__ import annotations

@@ -80,7 +80,7 @@ class PhongOriginal(ScalarBSDF):
 
     name = "phong_original"
     SOURCE = SOURCE
-    EXAMPLES = ({}, {"exponent": 1.0, "coefficient": 0.1}, {"exponent": 200.0, "coefficient": 0.8})
+    EXAMPLES = ({}, {"exponent": 4.0, "coefficient": 0.1}, {"exponent": 200.0, "coefficient": 0.8})
 
     exponent: float = parameter("[1, 1e6]", "1", "exponent of the lobe's cosine", default=10.0)
     coefficient: Spectrum = parameter("[0, 1]", "1/sr", "radiance for unit flux", spectral=True, default=0.5)
