@@ -57,6 +57,11 @@ def ggx_albedo(theta_deg: float) -> float:
     return float(1 - mu * np.log((1 + mu) / mu))
 
 
+def half_albedo(n: float) -> float:
+    """Return Ashikhmin & Shirley's albedo at normal incidence for Rs = 1: the mean of cos 2δ up to 45°."""
+    return 2 * (n + 1) * (1 - 2 ** (-(n + 3) / 2)) / (n + 3) - (1 - 2 ** (-(n + 1) / 2))
+
+
 def out_of_range(name: str, value: Any, interval: str, spectral: bool = False) -> tuple[dict[str, Any], str]:
     more = ", or a sequence of them, one a wavelength" if spectral else ""
     return {name: value}, f"{name} = {value!r} is not allowed: it must be a number in {interval}{more}"
@@ -146,6 +151,158 @@ ROWS = (
         hard=({"eta": 1.0}, {"eta": 1 + 1e-12}, {"eta": 1e-3}, {"eta": 1e3}),
         wrong=(out_of_range("eta", -1.5, "[1e-3, 1e3]"),),
         albedos=tuple(({}, t, 1.0) for t in (0.0, 60.0, 89.9)),
+    ),
+    Row(
+        "phong_original",
+        ordinary=({}, {"exponent": 50.0, "coefficient": 0.8}),
+        hard=(
+            {"exponent": 4.0, "coefficient": 1.0},
+            {"exponent": 1e3},
+            {"exponent": 1e6},
+            {"coefficient": 0.0},
+        ),
+        wrong=(
+            out_of_range("exponent", 0.5, "[1, 1e6]"),
+            out_of_range("coefficient", 1.1, "[0, 1]", spectral=True),
+        ),
+        # Fixed wo: exactly 2π k_s/(n + 1) at normal incidence.
+        albedos=tuple(
+            ({"exponent": n, "coefficient": 0.5}, 0.0, np.pi / (n + 1)) for n in (1.0, 10.0, 1e3, 1e6)
+        ),
+    ),
+    Row(
+        "blinn_phong",
+        ordinary=(
+            {},
+            {"normalization": "n+8"},
+            {"normalization": "n+8", "reflectance": 0.93},
+            {"normalization": "n+2", "exponent": 50.0},
+        ),
+        hard=(
+            {"exponent": 1.0},
+            {"exponent": 1.5, "normalization": "n+8"},
+            {"exponent": 1e3},
+            {"exponent": 1e6, "normalization": "n+8"},
+            {"exponent": 1e6},
+        ),
+        wrong=(
+            out_of_range("exponent", 0.5, "[1, 1e6]"),
+            out_of_range("reflectance", 2.0, "[0, 1]", spectral=True),
+            (
+                {"normalization": "n+1"},
+                "normalization = 'n+1' is not allowed: it must be one of 'exact', 'n+8', 'n+2'",
+            ),
+        ),
+        albedos=(
+            *(({"exponent": n}, 0.0, 1.0) for n in (1.0, 10.0, 1e3, 1e6)),
+            ({"exponent": 10.0, "normalization": "n+8"}, 0.0, 18 * (10 + 2.0**-5) / (12 * 14)),
+            ({"exponent": 10.0, "normalization": "n+2"}, 0.0, (10 + 2.0**-5) / 14),
+        ),
+    ),
+    Row(
+        "ward",
+        ordinary=(
+            {},
+            {"alpha_x": 0.15, "alpha_y": 0.4, "reflectance": 0.7},
+            {"alpha_x": 0.1, "alpha_y": 0.1},
+        ),
+        hard=(
+            {"alpha_x": 1.0, "alpha_y": 1.0},
+            {"alpha_x": 1e-3, "alpha_y": 1e-3},
+            {"alpha_x": 1e-4, "alpha_y": 1e-4},
+        ),
+        wrong=(
+            out_of_range("alpha_x", 0, "[1e-4, 1]"),
+            out_of_range("alpha_y", 2, "[1e-4, 1]"),
+            out_of_range("reflectance", 1.5, "[0, 1]", spectral=True),
+        ),
+    ),
+    Row(
+        "ward_duer",
+        ordinary=({}, {"alpha_x": 0.15, "alpha_y": 0.4, "reflectance": 0.7}),
+        hard=(
+            {"alpha_x": 1.0, "alpha_y": 1.0},
+            {"alpha_x": 1e-3, "alpha_y": 1e-3},
+            {"alpha_x": 1e-4, "alpha_y": 1e-4},
+            {"reflectance": 0.0},
+        ),
+        wrong=(out_of_range("alpha_x", 0, "[1e-4, 1]"), out_of_range("alpha_y", 2, "[1e-4, 1]")),
+    ),
+    Row(
+        "ward_gmd",
+        ordinary=({}, {"alpha_x": 0.15, "alpha_y": 0.4, "reflectance": 0.7}),
+        hard=(
+            {"alpha_x": 1.0, "alpha_y": 1.0},
+            {"alpha_x": 0.5, "alpha_y": 0.2},
+            {"alpha_x": 1e-3, "alpha_y": 1e-3},
+            {"alpha_x": 1e-4, "alpha_y": 1e-4},
+        ),
+        wrong=(out_of_range("alpha_x", 0, "[1e-4, 1]"), out_of_range("alpha_y", 2, "[1e-4, 1]")),
+        albedos=tuple(
+            ({"alpha_x": a, "alpha_y": a}, 0.0, float(1 + a * a * np.expm1(-1 / a**2)))
+            for a in (0.05, 0.5, 1.0)
+        ),
+    ),
+    Row(
+        "ashikhmin_shirley",
+        ordinary=(
+            {},
+            {"exponent_u": 5.0, "exponent_v": 2000.0, "f0": 0.5},
+            {"exponent_u": 1.0, "exponent_v": 1.0, "f0": 0.0, "reflectance": 1.0},
+        ),
+        hard=(
+            {"exponent_u": 1e4, "exponent_v": 1e4, "f0": 1.0},
+            {"exponent_u": 1e5, "exponent_v": 1e5, "f0": 0.04, "reflectance": 1.0},
+        ),
+        wrong=(
+            out_of_range("exponent_u", 0.5, "[1, 1e5]"),
+            out_of_range("exponent_v", 1e6, "[1, 1e5]"),
+            out_of_range("f0", 1.5, "[0, 1]", spectral=True),
+            out_of_range("reflectance", -0.5, "[0, 1]", spectral=True),
+        ),
+        albedos=tuple(
+            ({"exponent_u": n, "exponent_v": n, "f0": 1.0}, 0.0, half_albedo(n)) for n in (1.0, 100.0)
+        ),
+    ),
+    Row(
+        "schlick",
+        ordinary=({}, {"roughness": 0.1, "f0": 1.0}, {"roughness": 0.3, "isotropy": 0.3, "f0": 0.9}),
+        hard=(
+            {"roughness": 1.0, "f0": 1e-3},
+            {"roughness": 0.01, "f0": 0.04},
+            {"roughness": 1e-4, "f0": 1.0},
+            {"roughness": 0.5, "isotropy": 0.05, "f0": 1.0},
+        ),
+        wrong=(
+            out_of_range("roughness", 0, "[1e-4, 1]"),
+            out_of_range("isotropy", 0, "[0.01, 1]"),
+            out_of_range("f0", 1.5, "[0, 1]", spectral=True),
+        ),
+        albedos=tuple(({"roughness": 1.0, "f0": 1.0}, t, 0.25) for t in (0.0, 60.0, 89.9)),
+    ),
+    Row(
+        "lafortune",
+        ordinary=(
+            {},
+            {"cx": 1.0, "cy": 1.0, "exponent": 20.0, "reflectance": 0.7},
+            {"cx": -0.9, "cy": -0.6, "cz": 0.95, "exponent": 8.0},
+            {"cx": -1.2, "cy": -1.2, "cz": 0.9},
+        ),
+        hard=(
+            {"exponent": 1e3},
+            {"cx": -1.05, "cy": -1.05},
+            {"cx": 0.0, "cy": 0.0, "exponent": 5.0},
+            {"cx": 0.0, "cy": 0.0, "cz": 0.0},
+        ),
+        wrong=(
+            out_of_range("cx", 3, "[-2, 2]"),
+            out_of_range("exponent", 0.5, "[1, 1e3]"),
+            out_of_range("reflectance", 1.5, "[0, 1]", spectral=True),
+        ),
+        albedos=(
+            ({"exponent": 30.0, "reflectance": 0.5}, 0.0, 0.5),
+            ({"cx": 0.0, "cy": 0.0, "exponent": 5.0}, 60.0, 0.5**5),
+        ),
     ),
 )
 

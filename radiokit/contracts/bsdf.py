@@ -83,9 +83,6 @@ class BSDF(ABC):
     kind: ClassVar[Kind] = ""
     """What the model is in one word, for the table of models."""
 
-    isotropic: ClassVar[bool] = True
-    """Whether f is unchanged by a turn about the normal, and by mirroring at the plane of incidence."""
-
     transmissive: ClassVar[bool] = False
     """Whether light passes: then either direction may be below the horizon, and the cosine is |cosθ|."""
 
@@ -129,6 +126,11 @@ class BSDF(ABC):
     def delta_lobes(self, wo: FloatArray) -> tuple[DeltaLobe, ...]:
         """Return the delta lobes for ``wo`` (N, 3); none by default."""
         return ()
+
+    @property
+    def isotropic(self) -> bool:
+        """Whether f is unchanged by a turn about the normal, and by mirroring at the plane of incidence."""
+        return True
 
     @property
     def smooth(self) -> bool:
