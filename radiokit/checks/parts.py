@@ -14,7 +14,6 @@ from radiokit.contracts.albedo import Side, directional_albedo
 from radiokit.contracts.bsdf import BSDF, FloatArray
 from radiokit.facts.directions import refract
 from radiokit.facts.estimate import Estimate
-from radiokit.measure.quadrature import hemisphere
 
 __all__ = [
     "Part",
@@ -125,26 +124,8 @@ def share(
     For fixed wi it is ∫ f |cosθo| dωo over the hemisphere of ``w`` or over the other one; for fixed wo the
     same of f n(wi)² / n(wo)², which for a reciprocal f is the same number. Delta lobes are included.
     """
-    below = bool(w[2] < 0)
-    part = Part(f, fixed, below, through=side == "transmitted")
-    up = flipped(w, below)
-    if width is None and not part.through:
-        width = f.lobe_width()
-    integrand = part.integrand(up)
-    scale = 1 / brighter(f, w) if part.through and fixed == "wo" else 1.0
-    found = hemisphere(
-        integrand,
-        wo=part.aim(up),
-        width=width,
-        rtol=rtol,
-        atol=atol,
-        symmetric=f.isotropic,
-        smooth=f.smooth,
-        max_evaluations=max_evaluations,
-    )
-    delta = delta_share(f, w[None, :], side)[0]
-    total = scale * found.value + (delta[0] if len(delta) == 1 else delta)
-    return replace(found, value=total, error=scale * found.error + 4 * f.precision * np.abs(total))
+    tolerances: dict[str, Any] = {"rtol": rtol, "atol": atol, "max_evaluations": max_evaluations}
+    return directional_albedo(f, w, fixed=fixed, side=side, width=width, **tolerances)
 
 
 def scattered(

@@ -17,11 +17,15 @@ from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.measure import lowdiscrepancy
 from radiokit.measure.quadrature import hemisphere
+from radiokit.measure.transmission import sphere, transmission
 
-__all__ = ["Side", "albedo", "delta_albedo", "directional_albedo", "integrand"]
+__all__ = ["Part", "Side", "albedo", "delta_albedo", "directional_albedo", "integrand", "radiance_to_flux"]
 
 Side = Literal["wo", "wi"]
 """Which direction is held fixed."""
+
+Part = Literal["both", "reflected", "transmitted"]
+"""What is counted: the flux that stays on the fixed direction's side of the surface, or passes, or both."""
 
 SAMPLES, MOST_SAMPLES = 1 << 20, 1 << 24
 """Samples for each direction by default, and at most when a relative error is asked for."""
@@ -39,14 +43,20 @@ def albedo(
     samples: int | None = None,
     rng: int | np.random.Generator | None = None,
     fixed: Side = "wo",
+    side: Part = "both",
 ) -> Estimate:
     """Return the directional albedo ρ(wo) = ∫ f(wi, wo) cosθi dωi, delta lobes included.
+
+    Where light passes, it is the share of the flux that is reflected and transmitted. Light sent from wo
+    would be scattered into wi with the density f(wo, wi) |cosθi| = f(wi, wo) n(wi)²/n(wo)² |cosθi|, with n(w)
+    the refractive index on w's side, and that is what is integrated for a fixed ``wo``; for a fixed ``wi``
+    it is f(wi, wo) |cosθo|.
 
     Parameters
     ----------
     f : BSDF or callable
     wo : array_like, shape (3,) or (N, 3)
-        Unit vectors above the horizon.
+        Unit vectors above the horizon; on either side for a model that transmits.
     method : {"quadrature", "mc", "qmc"}
         Quadrature gives a bound; Monte Carlo samples the BSDF and gives a standard error, with random points
         or (``qmc``) with sixteen randomly shifted lattices. For ``mc``, a model with a weight kernel is run
@@ -62,6 +72,8 @@ def albedo(
         ``rtol`` at most 2²⁴, and with ``seconds`` as many as there is time for.
     fixed : {"wo", "wi"}
         Hold ``wi`` fixed instead and integrate over wo: what a ray of light from there loses.
+    side : {"both", "reflected", "transmitted"}
+        Count only what stays on the fixed direction's side of the surface, or only what passes.
 
     Returns
     -------
@@ -73,8 +85,8 @@ def albedo(
     Raises
     ------
     ParameterError
-        When ``wo`` is not a unit vector above the horizon, ``method`` is unknown, or ``seconds`` is given for
-        the quadrature.
+        When ``wo`` is not a unit vector above the horizon (off the surface, for a model that transmits),
+        ``method`` or ``side`` is unknown, or ``seconds`` is given for the quadrature.
     CallableError, NonFiniteError
         When the function fails at some direction.
 
@@ -93,8 +105,11 @@ def albedo(
     wo = check_directions("wo", wo)
     if wo.ndim > 2:
         raise ParameterError("wo", wo.shape, "of shape (3,) or (N, 3)")
-    if not np.all(wo[..., 2] > 0):
-        raise ParameterError("wo", wo.tolist(), "above the horizon (z > 0)")
+    if not np.all(wo[..., 2] != 0 if model.transmissive else wo[..., 2] > 0):
+        allowed = "off the surface (z ≠ 0)" if model.transmissive else "above the horizon (z > 0)"
+        raise ParameterError("wo", wo.tolist(), allowed)
+    if side not in ("both", "reflected", "transmitted"):
+        raise ParameterError("side", side, "'both', 'reflected' or 'transmitted'")
     if fixed not in ("wo", "wi"):
         raise ParameterError("fixed", fixed, "'wo' or 'wi'")
     if seconds is not None and not seconds > 0:
@@ -103,7 +118,7 @@ def albedo(
         if seconds is not None:
             raise ParameterError("seconds", seconds, "None, or method 'mc' or 'qmc'")
         aim = 1e-8 if rtol is None else rtol
-        one = lambda w, share: directional_albedo(model, w, fixed=fixed, rtol=aim)  # noqa: E731
+        one = lambda w, share: directional_albedo(model, w, fixed=fixed, side=side, rtol=aim)  # noqa: E731
     elif method in ("mc", "qmc"):
         if fixed == "wi":
             raise ParameterError("method", method, "'quadrature' when wi is held fixed")
@@ -112,7 +127,7 @@ def albedo(
         if samples is None and seconds is None:
             samples = SAMPLES if rtol is None else MOST_SAMPLES
         one = lambda w, share: sampled(  # noqa: E731
-            model, w, seed, samples=samples, rtol=rtol, seconds=None if seconds is None else share
+            model, w, seed, side, samples=samples, rtol=rtol, seconds=None if seconds is None else share
         )
     else:
         raise ParameterError("method", method, "'quadrature', 'mc' or 'qmc'")
@@ -142,6 +157,7 @@ def directional_albedo(
     fixed_direction: FloatArray,
     *,
     fixed: Side = "wo",
+    side: Part = "both",
     width: float | None = None,
     rtol: float = 1e-8,
     atol: float = 0.0,
@@ -156,17 +172,27 @@ def directional_albedo(
     >>> bool(abs(estimate.value - 0.5) <= estimate.error < 5e-9)
     True
     """
-    found = hemisphere(
-        integrand(model, fixed_direction, fixed),
-        wo=fixed_direction,
-        width=model.lobe_width() if width is None else width,
-        rtol=rtol,
-        atol=atol,
-        symmetric=model.isotropic,
-        smooth=model.smooth,
-        max_evaluations=max_evaluations,
-    )
-    delta = delta_albedo(model, fixed_direction)
+    options: dict[str, Any] = {
+        "wo": fixed_direction,
+        "width": model.lobe_width() if width is None else width,
+        "rtol": rtol,
+        "atol": atol,
+        "symmetric": model.isotropic,
+        "smooth": model.smooth,
+        "max_evaluations": max_evaluations,
+    }
+    value = integrand(model, fixed_direction, fixed)
+    if not model.transmissive:
+        found = hemisphere(value, **options)
+        found = found if side != "transmitted" else found.scaled(0.0)
+    elif side == "reflected":
+        below = fixed_direction[2] < 0
+        options["wo"] = _mirror(fixed_direction) if below else fixed_direction
+        found = hemisphere((lambda w: value(_mirror(w))) if below else value, **options)
+    else:
+        eta = model.relative_index() ** np.sign(fixed_direction[2])
+        found = (sphere if side == "both" else transmission)(value, eta=float(eta), **options)
+    delta = delta_albedo(model, fixed_direction, side)
     if not np.any(delta):
         return replace(found, error=found.error + 4 * model.precision * np.abs(found.value))
     total = found.value + delta
@@ -174,36 +200,67 @@ def directional_albedo(
 
 
 def integrand(model: BSDF, fixed_direction: FloatArray, fixed: Side) -> Callable[[FloatArray], Any]:
-    """Return w ↦ f cosθ(w) with the other direction held fixed."""
+    """Return w ↦ f |cosθ(w)|, as a share of flux, with the other direction held fixed."""
 
     def value(w: FloatArray) -> Any:
         other = np.broadcast_to(fixed_direction, w.shape)
-        f = model.evaluate(w, other) if fixed == "wo" else model.evaluate(other, w)
-        return (f.T * w[:, 2]).T
+        if not model.transmissive:
+            f = model.evaluate(w, other) if fixed == "wo" else model.evaluate(other, w)
+            return (f.T * w[:, 2]).T
+        if fixed == "wi":
+            return (model.evaluate(other, w).T * np.abs(w[:, 2])).T
+        return (model.evaluate(w, other).T * (np.abs(w[:, 2]) * radiance_to_flux(model, w, other))).T
 
     return value
 
 
-def delta_albedo(model: BSDF, wo: FloatArray) -> Any:
+def radiance_to_flux(model: BSDF, wi: FloatArray, wo: FloatArray) -> Any:
+    """Return n(wi)²/n(wo)² (N,), which makes f |cosθi| a share of flux for a fixed ``wo``."""
+    eta = model.relative_index()
+    passes = (wi[:, 2] < 0) != (wo[:, 2] < 0)
+    return np.where(passes, np.where(wi[:, 2] < 0, eta * eta, 1 / (eta * eta)), 1.0)
+
+
+def delta_albedo(model: BSDF, wo: FloatArray, side: Part = "both") -> Any:
     """Return the share of the flux that leaves in delta lobes; 0.0 when there are none."""
-    return sum((lobe.weight[0] for lobe in model.delta_lobes(wo[None, :])), start=np.float64(0.0))
+    lobes = [
+        lobe
+        for lobe in model.delta_lobes(wo[None, :])
+        if side == "both" or (side == "reflected") == (lobe.wi[0, 2] * wo[2] > 0)
+    ]
+    return sum((lobe.weight[0] for lobe in lobes), start=np.float64(0.0))
 
 
-def _monte_carlo(model: BSDF, wo: FloatArray, seed: int, **stop: Any) -> Estimate:
+def _mirror(w: FloatArray) -> FloatArray:
+    return w * np.array([1.0, 1.0, -1.0])
+
+
+def _sampled_share(model: BSDF, u: FloatArray, wo: FloatArray, side: Part) -> Any:
+    """Return the samples' weights as shares of flux, 0 where they leave on the side that is not counted."""
+    held = np.broadcast_to(wo, (len(u), 3))
+    wi, weight = model.sample(u, held)
+    if model.transmissive:
+        weight = (weight.T * radiance_to_flux(model, wi, held)).T
+    if side == "both":
+        return weight
+    return (weight.T * ((wi[:, 2] * wo[2] > 0) == (side == "reflected"))).T
+
+
+def _monte_carlo(model: BSDF, wo: FloatArray, seed: int, side: Part, **stop: Any) -> Estimate:
     from radiokit.measure.fused import fused_mean
 
     def weight(*u: FloatArray) -> Any:
-        points = np.stack(u, axis=-1)
-        return model.sample(points, np.broadcast_to(wo, (len(points), 3)))[1]
+        return _sampled_share(model, np.stack(u, axis=-1), wo, side)
 
-    function, constants = model.weight_kernel(wo) or (weight, ())
+    plain = side == "both" and model.relative_index() == 1.0  # a weight is a share of flux as it is
+    function, constants = (model.weight_kernel(wo) if plain else None) or (weight, ())
     method = "Monte Carlo, BSDF-sampled"
     return fused_mean(function, constants, dimensions=model.dimensions, rng=seed, method=method, **stop)
 
 
-def _low_discrepancy(model: BSDF, wo: FloatArray, seed: int, **stop: Any) -> Estimate:
+def _low_discrepancy(model: BSDF, wo: FloatArray, seed: int, side: Part, **stop: Any) -> Estimate:
     def draw(u: FloatArray) -> Any:
-        return model.sample(u, np.broadcast_to(wo, (len(u), 3)))[1]
+        return _sampled_share(model, u, wo, side)
 
     method = "shifted lattices, BSDF-sampled"
     return lowdiscrepancy.mean(draw, dimensions=model.dimensions, rng=seed, method=method, **stop)

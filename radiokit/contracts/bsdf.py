@@ -132,8 +132,8 @@ class BSDF(ABC):
     def lobe_width(self) -> float | None:
         """Return the lobe's width in the slope space of half vectors, or None if it is unknown.
 
-        α for a microfacet model, 1 for a diffuse one. Quadrature places its nodes by it; being wrong by a
-        factor of 4 costs evaluations, not accuracy.
+        α for a microfacet model, 1 for a diffuse one, the narrowest of a sum of lobes. Quadrature places its
+        nodes by it; being wrong by a factor of 4 costs evaluations, not accuracy.
         """
         return None
 

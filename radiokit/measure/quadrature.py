@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,19 +14,46 @@ from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.converge import GK21, ROUNDING, Integrand, RuleSum, adaptive, apply_rule, converge
 from radiokit.measure.lattice import kronecker
-from radiokit.measure.slope import find_lobe, gauss_legendre, mirrored, slope_map, slope_rule, turned
+from radiokit.measure.ridge import Ridge, find_ridge
+from radiokit.measure.slope import Lobe, find_lobe, gauss_legendre, mirrored, slope_map, slope_rule, turned
+from radiokit.measure.split import kinked, split_rule
 
-__all__ = ["box", "hemisphere"]
+__all__ = ["box", "hemisphere", "missed"]
 
 FloatArray = npt.NDArray[np.float64]
 
 SIZES = (16, 24, 32, 48, 64, 96, 128, 192)
 """Nodes along each axis of a rectangle, tried in turn until rules agree."""
 
-SLOPE_SIZES = ((20, 14), (28, 20), (40, 28), (52, 40), (72, 52), (104, 76), (144, 104), (208, 152))
+SLOPE_SIZES: tuple[tuple[int, int], ...] = (
+    (20, 14),
+    (28, 20),
+    (40, 28),
+    (52, 40),
+    (72, 52),
+    (104, 76),
+    (144, 104),
+    (208, 152),
+    (288, 216),
+    (400, 304),
+)
 """Radii and azimuths in slope space; a lobe at grazing incidence needs more of the former."""
 
-WIDTHS = (1.35, 0.8, 1.2, 1.0, 0.9, 1.1, 0.85, 1.0)
+SPLIT_SIZES: tuple[tuple[int, int], ...] = (
+    (14, 10),
+    (18, 14),
+    (24, 20),
+    (32, 28),
+    (44, 40),
+    (60, 56),
+    (84, 80),
+    (120, 112),
+    (160, 160),
+    (200, 240),
+)
+"""Radii and azimuths of each part of a rule that is cut at the circle cosθi = cosθo."""
+
+WIDTHS = (1.35, 0.8, 1.2, 1.0, 0.9, 1.1, 0.85, 1.0, 0.9, 1.1)
 """Factors on the lobe's width, so that consecutive rules do not fail in the same way."""
 
 SCAN = 4096
@@ -34,6 +61,18 @@ SCAN = 4096
 
 STEEPNESS = 0.01 * float(np.finfo(float).eps)
 """Rounding, relative to the sum of absolute terms, times the lobe's width and cosθo; at most 0.007 eps."""
+
+THIN = 0.08
+"""Lobes whose width is a smaller share of their length get panels of azimuth of their own."""
+
+RULES = 130_000
+"""Evaluations that product rules may always use; beyond it, a quarter of the budget."""
+
+STEEP = 0.5
+"""cosθo above which they do: a grazing lobe is long in slope without being so on the sphere."""
+
+LOOK = 512
+"""Points at which the shape of a smooth lobe is looked at, where it may be long and narrow."""
 
 DOUBT = 2.0
 """Standard deviations between a rule and the scan that raise doubt; evenly spread points err by far less."""
@@ -99,29 +138,57 @@ def hemisphere(
         core = width
     else:
         lobe = find_lobe(integrand, wo)
-        width, core, spent = lobe.width, lobe.core, lobe.evaluations
+        spent = lobe.evaluations
+        if lobe.retro and max_evaluations - spent > 8 * SCAN:
+            lobe = _confirmed(integrand, wo, lobe)
+            spent += lobe.evaluations
+        width, core = lobe.width, lobe.core
         if lobe.retro:
             original = integrand
             integrand = lambda w: original(turned(w))  # noqa: E731
     sides = 1 if symmetric else 2
-    scan = None
-    if not smooth and max_evaluations - spent > 2 * SCAN:
-        scan = _scan(integrand, wo, core)
-        spent += SCAN
-    total = spent + np.cumsum([sides * radii * azimuths for radii, azimuths in SLOPE_SIZES])
-    sizes = SLOPE_SIZES[: max(3, int(np.sum(total <= max_evaluations)))]
+    cut, scan, ridge = False, None, None
+    if max_evaluations - spent > 2 * SCAN:
+        if not smooth:
+            cut, looked = kinked(integrand, wo, core)
+            scan = _scan(integrand, wo, core)
+            spent += SCAN + looked
+            ridge = None if symmetric else scan.ridge
+        elif not symmetric:
+            ridge = _scan(integrand, wo, core, LOOK).ridge
+            spent += LOOK
+    steep = wo[2] > STEEP and ridge is not None and ridge.ratio < THIN
+    cut = cut or steep
+    sizes = SPLIT_SIZES if cut else SLOPE_SIZES
+
+    def rule(n: tuple[int, int], factor: float) -> tuple[FloatArray, FloatArray]:
+        if cut:
+            return split_rule(wo, width * factor, n, ridge=ridge, symmetric=symmetric)
+        return slope_rule(wo, width * factor, n, symmetric=symmetric)
 
     def rules() -> Iterator[RuleSum]:
-        for n, factor in zip(sizes, WIDTHS, strict=False):
-            wi, weight = slope_rule(wo, width * factor, n, symmetric=symmetric)
+        used = spent
+        most = min(max_evaluations, max(RULES, max_evaluations // 4))  # the rest is for refinement
+        for k, (n, factor) in enumerate(zip(sizes, WIDTHS, strict=False)):
+            least = (1.5 if cut else 1.0) * sides * n[0] * n[1]
+            if k > 2 and used + least > most:
+                return
+            wi, weight = rule(n, factor)
+            used += len(wi)
+            if k > 2 and used > most:
+                return
             yield apply_rule(integrand, wi, weight)
 
     # A direction is known to an eps; a narrow lobe magnifies that, and a grazing one more.
     rounding = ROUNDING + STEEPNESS / (core * float(wo[2]))
     found = converge(rules(), rtol, atol, smooth=smooth, rounding=rounding)
     method = "slope-space quadrature"
+
+    def lost() -> float:
+        return 0.0 if scan is None else missed(found, scan.mean, scan.spread)
+
     budget = max_evaluations - found.evaluations - spent
-    if (not found.converged or _missed(found, scan) > 0) and budget > 4 * GK21:
+    if (not found.converged or lost() > 0) and budget > 4 * GK21:
 
         def panels(scale: float) -> Integrand:
             def square(points: FloatArray) -> Any:
@@ -140,10 +207,10 @@ def hemisphere(
         if refined.converged or np.all(refined.error <= found.error):
             found, method = refined, "adaptive cubature in slope space"
         found = replace(found, evaluations=evaluations)
-    missed = _missed(found, scan)
-    if missed > 0:
+    unseen = lost()
+    if unseen > 0:
         note = "a scan of the hemisphere found mass that the rules missed"
-        found = replace(found, error=np.maximum(found.error, 2 * missed), converged=False, note=note)
+        found = replace(found, error=np.maximum(found.error, 2 * unseen), converged=False, note=note)
     return replace(
         found,
         evaluations=found.evaluations + spent,
@@ -153,20 +220,37 @@ def hemisphere(
     )
 
 
-def _scan(integrand: Integrand, wo: FloatArray, width: float) -> tuple[Any, Any]:
-    """Return a rough integral and its uncertainty from points spread evenly, which see between the nodes."""
-    x, s = kronecker(SCAN, 2).T
+@dataclass(frozen=True)
+class Scan:
+    """A rough integral with its uncertainty, and the ridge of the lobe that was seen."""
+
+    mean: Any
+    spread: Any
+    ridge: Ridge | None
+
+
+def _scan(integrand: Integrand, wo: FloatArray, width: float, count: int = SCAN) -> Scan:
+    """Integrate roughly with points spread evenly, which see between the nodes of the rules."""
+    x, s = kronecker(count, 2).T
     wi, weight, _ = slope_map(wo, width, x, s)
-    wi[::2] = mirrored(wi[::2], wo)
+    far = np.arange(count) % 2 == 0
+    wi[far] = mirrored(wi[far], wo)
     terms = (np.asarray(integrand(wi), dtype=float).T * weight).T
-    return terms.mean(axis=0), terms.std(axis=0) / np.sqrt(SCAN)
+    ridge = find_ridge(wo, s, far, np.abs(terms.reshape(count, -1)).sum(axis=1))
+    return Scan(terms.mean(axis=0), terms.std(axis=0) / np.sqrt(count), ridge)
 
 
-def _missed(found: Estimate, scan: tuple[Any, Any] | None) -> float:
-    """Return by how much an integral and the scan differ beyond what either allows; 0 where they agree."""
-    if scan is None:
-        return 0.0
-    mean, spread = scan
+def _confirmed(integrand: Integrand, wo: FloatArray, lobe: Lobe) -> Lobe:
+    """Return the lobe around ``wo`` or that around its mirror direction, whichever is seen more evenly."""
+    other = find_lobe(integrand, wo, around=(False,))
+    there = _scan(lambda w: integrand(turned(w)), wo, lobe.core)
+    here = _scan(integrand, wo, other.core)
+    best = other if np.max(here.spread) < np.max(there.spread) else lobe
+    return replace(best, evaluations=other.evaluations + 2 * SCAN)
+
+
+def missed(found: Estimate, mean: Any, spread: Any) -> float:
+    """Return by how much an integral and a scan differ beyond what either allows; 0 where they agree."""
     difference = np.abs(found.value - mean)
     return float(np.max(np.where(difference > DOUBT * spread + found.error, difference, 0.0)))
 

@@ -28,6 +28,9 @@ FloatArray = npt.NDArray[np.float64]
 PROBE = (48, 16)
 """Radii and azimuths at which an unknown integrand is looked at for its lobe."""
 PROBE_WIDTH = 1e-5
+KEPT = 2100
+"""Nodes of the largest rule that is kept for the next integral at the same angle and width: 8 MB in all."""
+
 RETRO = 0.1
 """How much more mass must be seen around ``wo`` than around its mirror direction to aim there."""
 
@@ -162,11 +165,39 @@ def slope_rule(
     width = np.broadcast_to(np.asarray(width, dtype=float), wo.shape[:-1])
     if not np.all(width > 0):
         raise ParameterError("width", width.tolist(), "greater than 0")
-    wi, weight, _ = _grid(wo, width, n)
+    radial, azimuthal = (n, n) if isinstance(n, int) else n
+    if wo.ndim == 1 and radial * azimuthal <= KEPT:
+        polar = float(wo[2]), float(np.hypot(wo[0], wo[1]))
+        plane, weight = _kept(*polar, float(width), radial, azimuthal)
+        wi = _turned_to(plane, wo, polar[1])
+    else:
+        wi, weight, _ = _grid(wo, width, n)
     if not symmetric:
         wi = np.concatenate([wi, mirrored(wi, wo[..., None, :])], axis=-2)
         weight = np.concatenate([weight, weight], axis=-1) / 2
     return wi, weight
+
+
+@lru_cache(maxsize=128)
+def _kept(
+    cos_o: float, sin_o: float, width: float, radial: int, azimuthal: int
+) -> tuple[FloatArray, FloatArray]:
+    """Keep a small rule for a polar angle: the directions, as rows, where wo has the azimuth 0."""
+    wi, weight, _ = _grid(np.array([sin_o, 0.0, cos_o]), np.asarray(width), (radial, azimuthal))
+    plane = np.ascontiguousarray(wi.T)
+    plane.setflags(write=False)
+    weight.setflags(write=False)
+    return plane, weight
+
+
+def _turned_to(plane: FloatArray, wo: FloatArray, sin_o: float) -> FloatArray:
+    """Turn rows of directions about the normal, to the azimuth of ``wo``."""
+    c, d = (1.0, 0.0) if sin_o == 0 else (wo[0] / sin_o, wo[1] / sin_o)
+    wi = np.empty((plane.shape[1], 3))
+    wi[:, 0] = plane[0] if d == 0 and c == 1 else c * plane[0] - d * plane[1]
+    wi[:, 1] = plane[1] if d == 0 and c == 1 else d * plane[0] + c * plane[1]
+    wi[:, 2] = plane[2]
+    return wi
 
 
 def mirrored(wi: FloatArray, wo: FloatArray) -> FloatArray:
@@ -208,13 +239,18 @@ class Lobe:
 
 
 def find_lobe(
-    integrand: Callable[[FloatArray], Any], wo: npt.ArrayLike, probe: tuple[int, int] = PROBE
+    integrand: Callable[[FloatArray], Any],
+    wo: npt.ArrayLike,
+    probe: tuple[int, int] = PROBE,
+    *,
+    around: tuple[bool, ...] = (False, True),
 ) -> Lobe:
     """Find the lobe at which ``slope_rule`` should aim for an unknown integrand.
 
     The width is the median slope of the half vector under the integrand's own mass, seen by a rule whose
     radii are spread evenly over five decades. It is α for GGX, and about 0.5 for a diffuse lobe. The rule
-    looks around the mirror direction and around ``wo`` itself, and the larger mass decides.
+    looks around the mirror direction and around ``wo`` itself, and the larger mass decides; ``around`` is
+    (False,) to look around the mirror direction alone.
 
     >>> lobe = find_lobe(lambda wi: wi[:, 2], (0.0, 0.0, 1.0))
     >>> 0.3 < lobe.width < 0.6, lobe.retro
@@ -225,7 +261,7 @@ def find_lobe(
     both = np.concatenate([wi, mirrored(wi, wo[None, :])])
     order = np.argsort(rho)
     best, best_mass, evaluations = Lobe(1.0, 1.0, False, 0), 0.0, 0
-    for retro in (False, True):
+    for retro in around:
         value = np.asarray(integrand(turned(both) if retro else both), dtype=float)
         value = np.abs(value.reshape(len(value), -1)).sum(axis=1)
         evaluations += len(value)

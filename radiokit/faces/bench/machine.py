@@ -7,7 +7,7 @@ from pathlib import Path
 
 from radiokit.faces.bench.peers.compiled import FLAGS, compiler_version
 from radiokit.faces.validate import machine
-from radiokit.measure.fused import processors
+from radiokit.measure.passes import processors
 
 __all__ = ["whole_machine"]
 

@@ -1,0 +1,142 @@
+"""Split: slope-space rules cut at the circle cosθi = cosθo, where max(cosθi, cosθo) has its kink."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from radiokit.measure.converge import Integrand
+from radiokit.measure.ridge import Ridge
+from radiokit.measure.slope import gauss_legendre, mirrored, slope_map
+
+__all__ = ["kinked", "split_rule"]
+
+FloatArray = npt.NDArray[np.float64]
+
+STEPS = (4e-5, 2e-5)
+"""Distances from the circle, in the radial coordinate, at which second differences are taken."""
+
+AZIMUTHS = 16
+"""Places on the circle at which an integrand is looked at."""
+
+KINK = (0.35, 0.65)
+"""By what second differences shrink when the step is halved: by 1/2 at a kink, by 1/4 where f is smooth."""
+
+NOISE = 1e-9
+"""Second differences below this share of the integrand are no kink that matters, or rounding."""
+
+
+def _circle(wo: FloatArray, width: npt.ArrayLike, s: FloatArray) -> FloatArray:
+    """Return ``slope_map``'s x of the circle: there the half vector's slope is ρ = tanθo cosφ = sinh y."""
+    y = np.arcsinh(np.hypot(wo[0], wo[1]) / wo[2]) * np.cos(np.pi * s)
+    width = np.asarray(width, dtype=float)
+    share = np.arcsinh(np.sinh(y) / width) / np.arcsinh(np.exp(y) / width)
+    share = np.clip(share, 0.0, 1.0)
+    result: FloatArray = share / (1 + np.sqrt(1 - share))
+    return result
+
+
+def kinked(integrand: Integrand, wo: FloatArray, width: float) -> tuple[bool, int]:
+    """Return whether the integrand's slope jumps at the circle cosθi = cosθo, and the evaluations.
+
+    >>> wo = np.array([0.6, 0.0, 0.8])
+    >>> kinked(lambda w: np.maximum(w[:, 2], wo[2]), wo, 0.3)[0], kinked(lambda w: w[:, 2], wo, 0.3)[0]
+    (True, False)
+    """
+    if np.hypot(wo[0], wo[1]) < 1e-6 * wo[2]:
+        return False, 0  # at normal incidence the circle is a point
+    s, _ = _panels(wo, width, AZIMUTHS, None, False)
+    s = s[s < 0.5]
+    shift = np.array([0.0, *(sign * step for step in STEPS for sign in (-1.0, 1.0))])
+    x = _circle(wo, width, s)
+    x = x + shift[:, None] * np.minimum(x, 1 - x)
+    wi, weight, _ = slope_map(wo, width, x, s)
+    flat = wi.reshape(-1, 3)
+    value = np.asarray(integrand(np.concatenate([flat, mirrored(flat, wo)])), dtype=float)
+    value = value.reshape(2, *x.shape, -1) * weight[..., None]
+    size = np.abs(value[:, 0]).sum(axis=(0, 1))
+    wide, near = (np.abs(value[:, k] + value[:, k + 1] - 2 * value[:, 0]).sum(axis=(0, 1)) for k in (1, 3))
+    found = (near > KINK[0] * wide) & (near < KINK[1] * wide) & (near > NOISE * size)
+    return bool(np.any(found)), 2 * x.size
+
+
+def split_rule(
+    wo: FloatArray,
+    width: float,
+    n: tuple[int, int],
+    *,
+    ridge: Ridge | None = None,
+    symmetric: bool = False,
+) -> tuple[FloatArray, FloatArray]:
+    """Return directions and weights like ``slope_rule``, by Gauss-Legendre rules on both sides of the circle.
+
+    Parameters
+    ----------
+    n : (int, int)
+        Nodes along each radial part, and along each panel of azimuth: two, or up to five beside a ridge.
+    ridge : Ridge, optional
+        Where a long lobe lies, for azimuths to crowd at.
+
+    >>> wo = np.array([0.6, 0.0, 0.8])
+    >>> wi, weight = split_rule(wo, 1.0, (24, 24))
+    >>> brighter = wi[:, 2] > wo[2]  # a cap of height 1 − cosθo
+    >>> round(float(weight[brighter].sum() / (2 * np.pi)), 9)
+    0.2
+    """
+    u, wu = gauss_legendre(n[0])
+    sides = []
+    for far in (False,) if symmetric or ridge is None else (False, True):
+        s, ws = _panels(wo, width, n[1], ridge, far)
+        ahead = s < 0.5
+        local = np.full_like(s, width) if ridge is None else ridge.width(wo, width, s, far)
+        cut, front = _circle(wo, local[ahead], s[ahead]), ws[ahead]
+        pieces = (
+            (cut * u[:, None], ahead, wu[:, None] * cut * front),
+            (cut + (1 - cut) * u[:, None], ahead, wu[:, None] * (1 - cut) * front),
+            (u[:, None] * np.ones(int(np.sum(~ahead))), ~ahead, wu[:, None] * ws[~ahead]),
+        )
+        wi, weight = _joined([(*slope_map(wo, local[at], x, s[at])[:2], w) for x, at, w in pieces])
+        sides.append((mirrored(wi, wo) if far else wi, weight))
+    wi, weight = sides[0]
+    if symmetric:
+        return wi, weight
+    other = sides[1] if ridge is not None else (mirrored(wi, wo), weight)
+    return np.concatenate([wi, other[0]]), np.concatenate([weight, other[1]]) / 2
+
+
+def _panels(
+    wo: FloatArray, width: float, n: int, ridge: Ridge | None, far: bool
+) -> tuple[FloatArray, FloatArray]:
+    """Return azimuths s in [0, 1] and their weights, in panels that end, and crowd, where f bends."""
+    big_y = float(np.arcsinh(np.hypot(wo[0], wo[1]) / wo[2]))
+    # Where y is less than the width, the circle runs through the lobe.
+    focus = {0.5: min(width / (np.pi * big_y), 0.5) if big_y > 0 else 0.5}
+    if ridge is not None:
+        place = 1 - ridge.place if far else ridge.place
+        if abs(place - 0.5) > 1e-3:
+            focus[place] = ridge.aspect / np.pi
+        else:
+            focus[0.5] = min(focus[0.5], ridge.aspect / np.pi)
+        if min(place, 1 - place) * np.pi < ridge.aspect:  # the ridge is at an end, and seen from both
+            focus = {0.5: focus[0.5], 0.0: ridge.aspect / np.pi, 1.0: ridge.aspect / np.pi}
+    points = sorted({0.0, 1.0, *focus})
+    places, weights = [], []
+    v, wv = gauss_legendre(n)
+    for low, high in pairwise(points):
+        ends = [(low, high), (high, low)]
+        ends = [(a, b) for a, b in ends if a in focus]
+        for a, b in ends:
+            b = (a + b) / 2 if len(ends) == 2 else b
+            scale = focus[a]
+            length = np.arcsinh(abs(b - a) / scale)
+            places.append(a + np.copysign(scale, b - a) * np.sinh(length * v))
+            weights.append(scale * np.cosh(length * v) * length * wv)
+    return np.clip(np.concatenate(places), 0.0, 1.0), np.concatenate(weights)
+
+
+def _joined(parts: list[tuple[Any, Any, Any]]) -> tuple[FloatArray, FloatArray]:
+    directions = np.concatenate([wi.reshape(-1, 3) for wi, _, _ in parts])
+    return directions, np.concatenate([(weight * w).ravel() for _, weight, w in parts])
