@@ -66,6 +66,31 @@ def oren_nayar_albedo(sigma: float, theta_deg: float) -> float:
     return float(a + b / np.pi * (s * (theta - s * c) + 2 / 3 * s / c * (1 - s**3)))
 
 
+def eon_albedo(rho: float, r: float, theta_deg: float) -> float:
+    """Return ρ E + ρ' (1 − E), with the closed form of E."""
+    theta = np.radians(theta_deg)
+    s, c = np.sin(theta), np.cos(theta)
+    a = 1 / (1 + (0.5 - 2 / (3 * np.pi)) * r)
+    e = a + r * a / np.pi * (s * (theta - s * c) + 2 / 3 * (s / c * (1 - s**3) - s))
+    mean = a * (1 + (2 / 3 - 28 / (15 * np.pi)) * r)
+    return float(rho * e + rho**2 * mean / (1 - rho * (1 - mean)) * (1 - e))
+
+
+def burley_albedo(r: float, theta_deg: float) -> float:
+    """Return the directional albedo of Burley's diffuse model, its azimuth averaged by hand, for ρ = 1."""
+    mu, q = np.cos(np.radians(theta_deg)), r - 0.5
+    x, w = np.polynomial.legendre.leggauss(12)
+    x, w, c = (x + 1) / 2, w / 2, (1 - mu) ** 5
+    mean = q + r * x * mu
+    square = mean**2 + r**2 * (1 - x * x) * (1 - mu * mu) / 2
+    return float(2 * (w * x) @ (1 + ((1 - x) ** 5 + c) * mean + (1 - x) ** 5 * c * square))
+
+
+def oren_nayar_full_albedo(sigma: float) -> float:
+    """Return the albedo at normal incidence for ρ = 1: β = 0 leaves C₁ and the interreflection."""
+    return 1 - 0.5 * sigma**2 / (sigma**2 + 0.33) + 0.17 * sigma**2 / (sigma**2 + 0.13)
+
+
 def out_of_range(name: str, value: Any, interval: str, spectral: bool = False) -> tuple[dict[str, Any], str]:
     more = ", or a sequence of them, one a wavelength" if spectral else ""
     return {name: value}, f"{name} = {value!r} is not allowed: it must be a number in {interval}{more}"
@@ -128,15 +153,11 @@ ROWS = (
     ),
     Row(
         "oren_nayar",
-        ordinary=({}, {"reflectance": 1.0}, {"reflectance": 1.0, "sigma": 1.0}),
+        ordinary=({}, {"reflectance": 1.0, "sigma": 1.0}),
         hard=(
             {"reflectance": 1.0, "sigma": 0.0},
-            {"reflectance": 1.0, "sigma": 0.1985},
-            {"reflectance": 1.0, "sigma": 0.32},
+            {"reflectance": 1.0, "sigma": 0.325},
             {"reflectance": 1.0, "sigma": 0.327},
-            {"reflectance": 1 / 1.0054, "sigma": 0.3},
-            {"sigma": float(np.pi / 2)},
-            {"sigma": 1e-4},
         ),
         wrong=(
             out_of_range("reflectance", 1.01, "[0, 1]", spectral=True),
@@ -144,8 +165,8 @@ ROWS = (
             out_of_range("sigma", 20, "[0, 1.5707963267948966]"),
         ),
         albedos=tuple(
-            ({"reflectance": 1.0, "sigma": s}, t, oren_nayar_albedo(s, t))
-            for s, t in ((0.3, 0.0), (0.3, 40.0), (0.3, 89.0), (1.2, 70.0), (0.2, 89.9))
+            ({"reflectance": 0.5, "sigma": s}, t, 0.5 * oren_nayar_albedo(s, t))
+            for s, t in ((0.3, 0.0), (0.3, 40.0), (0.2, 80.0))
         ),
     ),
     Row(
@@ -206,6 +227,46 @@ ROWS = (
         ),
         # Exactly ρ at normal incidence, for every exponent, as of the lobe about the mirror direction.
         albedos=tuple(({"exponent": n}, 0.0, 1.0) for n in (1.0, 10.0, 1e3, 1e6)),
+    ),
+    Row(
+        "oren_nayar_full",
+        ordinary=({}, {"reflectance": 1.0, "sigma": 1.0}),
+        hard=(
+            {"reflectance": 1.0, "sigma": 0.62},
+            {"reflectance": 0.95, "sigma": 0.3},
+            {"reflectance": 0.2, "sigma": 1.2},
+        ),
+        wrong=(
+            out_of_range("reflectance", 1.01, "[0, 1]", spectral=True),
+            out_of_range("sigma", -0.1, "[0, 1.5707963267948966]"),
+        ),
+        albedos=tuple(({"reflectance": 1.0, "sigma": s}, 0.0, oren_nayar_full_albedo(s)) for s in (0.3, 1.0)),
+    ),
+    Row(
+        "eon",
+        ordinary=({}, {"reflectance": 0.5, "roughness": 1.0}),
+        hard=({"roughness": 1.0}, {"roughness": 0.0}, {"roughness": 1e-9, "reflectance": 0.3}),
+        wrong=(
+            out_of_range("reflectance", 1.01, "[0, 1]", spectral=True),
+            out_of_range("roughness", 1.5, "[0, 1]"),
+        ),
+        albedos=tuple(
+            ({"reflectance": rho, "roughness": r}, t, eon_albedo(rho, r, t))
+            for rho, r, t in ((0.5, 0.3, 0.0), (0.5, 0.3, 40.0), (0.2, 1.0, 80.0))
+        ),
+    ),
+    Row(
+        "disney_diffuse",
+        ordinary=({}, {"roughness": 1.0, "reflectance": 0.5}),
+        hard=({"roughness": 0.0}, {"roughness": 0.41}, {"roughness": 1.0}),
+        wrong=(
+            out_of_range("reflectance", 1.01, "[0, 1]", spectral=True),
+            out_of_range("roughness", -0.5, "[0, 1]"),
+        ),
+        albedos=tuple(
+            ({"roughness": r}, t, burley_albedo(r, t))
+            for r, t in ((0.5, 0.0), (0.45, 72.0), (0.2, 60.0), (1.0, 89.9))
+        ),
     ),
 )
 

@@ -41,12 +41,16 @@ def _value(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, reflectance: An
 
 
 @kernel
-def _density(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, reflectance: Any, transmittance: Any) -> Any:
+def _density(
+    ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, reflectance: Any, transmittance: Any
+) -> Any:
     return select(oz != 0.0, 0.5 * abs(iz) / np.pi, 0.0)
 
 
 @kernel
-def _sample(u0: Any, u1: Any, u2: Any, ox: Any, oy: Any, oz: Any, reflectance: Any, transmittance: Any) -> Any:
+def _sample(
+    u0: Any, u1: Any, u2: Any, ox: Any, oy: Any, oz: Any, reflectance: Any, transmittance: Any
+) -> Any:
     """Return wi on either side with probability 1/2, whatever the wavelength, and 2ρ or 2τ."""
     x, y, z = from_disk(u0, u1)
     above = u2 < 0.5

@@ -50,9 +50,7 @@ def _value(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, albedo: Any) ->
 @kernel
 def _density(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, albedo: Any) -> Any:
     even = _even(oz)
-    return select(
-        (iz > _HORIZON) & (oz > _HORIZON), (even + 2.0 * (1.0 - even) * iz) / (2.0 * np.pi), 0.0
-    )
+    return select((iz > _HORIZON) & (oz > _HORIZON), (even + 2.0 * (1.0 - even) * iz) / (2.0 * np.pi), 0.0)
 
 
 @kernel

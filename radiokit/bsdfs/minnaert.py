@@ -89,7 +89,12 @@ class Minnaert(ScalarBSDF):
 
     name = "minnaert"
     SOURCE = SOURCE
-    EXAMPLES = ({}, {"darkening": 1.0, "reflectance": 1.0}, {"darkening": 0.5, "reflectance": 0.5}, {"darkening": 3.0})
+    EXAMPLES = (
+        {},
+        {"darkening": 1.0, "reflectance": 1.0},
+        {"darkening": 0.5, "reflectance": 0.5},
+        {"darkening": 3.0},
+    )
 
     darkening: float = parameter("[0, 4]", "1", "exponent of limb darkening", default=1.25)
     reflectance: Spectrum = parameter("[0, 1]", "1", "albedo at normal incidence", spectral=True, default=1.0)

@@ -101,7 +101,12 @@ class OrenNayar(ScalarBSDF):
 
     name = "oren_nayar"
     SOURCE = SOURCE
-    EXAMPLES = ({}, {"reflectance": 1.0}, {"sigma": 0.0, "reflectance": 1.0}, {"sigma": 1.2, "reflectance": 1.0})
+    EXAMPLES = (
+        {},
+        {"reflectance": 1.0},
+        {"sigma": 0.0, "reflectance": 1.0},
+        {"sigma": 1.2, "reflectance": 1.0},
+    )
     dimensions: ClassVar[int] = 3
 
     reflectance: Spectrum = parameter("[0, 1]", "1", "reflectance of the facets", spectral=True, default=0.9)
