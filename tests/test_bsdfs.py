@@ -212,7 +212,8 @@ ROWS = (
             out_of_range("transmittance", 1.5, "[0, 1]", spectral=True),
             (
                 {"reflectance": 0.7, "transmittance": 0.4},
-                "transmittance = 0.4 is not allowed: it must be at most 1 - reflectance, and reflectance = 0.7",
+                "transmittance = 0.4 is not allowed: "
+                "it must be at most 1 - reflectance, and reflectance = 0.7",
             ),
         ),
         albedos=(({"reflectance": 0.2, "transmittance": 0.7}, 60.0, 0.9),),
@@ -245,7 +246,11 @@ ROWS = (
     Row(
         "eon",
         ordinary=({}, {"reflectance": 0.5, "roughness": 1.0}),
-        hard=({"roughness": 1.0}, {"roughness": 0.0}, {"roughness": 1e-9, "reflectance": 0.3}),
+        hard=(
+            {"roughness": 1.0, "reflectance": 1.0},
+            {"roughness": 0.0, "reflectance": 1.0},
+            {"roughness": 1e-9, "reflectance": 0.3},
+        ),
         wrong=(
             out_of_range("reflectance", 1.01, "[0, 1]", spectral=True),
             out_of_range("roughness", 1.5, "[0, 1]"),

@@ -1,8 +1,8 @@
-"""Disney diffuse: Lambert with a Fresnel factor each way, and a bright rim where a rough surface sends light back.
+"""Disney diffuse: Lambert with a Fresnel factor each way, and a bright rim where the surface is rough.
 
-The diffuse part of Burley's principled material, made to look right. It gains energy when it is rough: the albedo,
-a polynomial in cosθ, is ρ (1 − 1/42 + 5/84 roughness) at normal incidence and ρ (41/84 + r + 5/72 r²) as θ → 90°.
-For ρ = 1 it exceeds 1 above a roughness of 0.4 (first at normal incidence), and is 1.5575 at grazing for 1.
+The diffuse part of Burley's principled material, made to look right. It gains energy when it is rough: for a
+roughness r, the albedo is a polynomial in cosθ, ρ (41/42 + 5/84 r) at normal incidence and ρ (41/84 + r +
+5/72 r²) as θ → 90°. With ρ = 1 it exceeds 1 for r > 0.4, first at normal incidence, and is 1.5575 at most.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ __all__ = ["DisneyDiffuse"]
 SOURCE = Source(
     authors="Burley",
     year=2012,
-    title="Physically-Based Shading at Disney. SIGGRAPH Course, Practical Physically Based Shading in Film and "
-    "Game Production",
+    title="Physically-Based Shading at Disney. SIGGRAPH Course, Practical Physically-Based Shading in "
+    "Film and Game Production",
     doi="10.1145/2343483.2343493",
     equation="section 5.3, the base diffuse model with F_D90 = 0.5 + 2 roughness cos²θd",
 )
@@ -136,8 +136,8 @@ class DisneyDiffuse(ScalarBSDF):
 def _highest(r: float) -> float:
     """Return the supremum of the albedo for ρ = 1.
 
-    With μ = cosθ, c = (1 − μ)⁵ and q = r − ½, F_D90 − 1 is q + r μμi + r sinθ sinθi cosφ. Its mean and its mean
-    square over φ, and ∫ μiʲ⁺¹ (1 − μi)⁵ dμi = 1/42, 1/168, 1/504 for j = 0, 1, 2, give the polynomial.
+    With μ = cosθ, c = (1 − μ)⁵ and q = r − ½, F_D90 − 1 is q + r μμi + r sinθ sinθi cosφ. Its mean and its
+    mean square over φ, and ∫ μiʲ⁺¹ (1 − μi)⁵ dμi = 1/42, 1/168, 1/504 for j = 0, 1, 2, give the polynomial.
     """
     mu = np.polynomial.Polynomial([0.0, 1.0])
     q, c = r - 0.5, (1 - mu) ** 5

@@ -1,7 +1,7 @@
 """EON: Oren-Nayar made to keep all energy, by giving back what its single scattering loses.
 
-The diffuse base of OpenPBR. Fujii's form of Oren-Nayar, whose albedo has a closed form that never exceeds 1, and a
-second lobe for what is scattered more than once, tinted by ρ at every bounce. White is lossless whatever the
+The diffuse base of OpenPBR. Fujii's form of Oren-Nayar, whose albedo has a closed form that never exceeds 1,
+and a second lobe for what is scattered more than once, tinted by ρ at every bounce. White is lossless at any
 roughness; the exact albedo is used, not the polynomial that the authors offer for speed.
 """
 
@@ -26,7 +26,8 @@ __all__ = ["EON"]
 SOURCE = Source(
     authors="Portsmouth, Kutz, Hill",
     year=2025,
-    title="EON: A Practical Energy-Preserving Rough Diffuse BRDF. Journal of Computer Graphics Techniques 14(1)",
+    title="EON: A Practical Energy-Preserving Rough Diffuse BRDF. Journal of Computer Graphics "
+    "Techniques 14(1)",
     doi="10.48550/arXiv.2410.18026",
     equation="listing 1, with the exact directional albedo of the Fujii-Oren-Nayar model",
 )
@@ -73,7 +74,7 @@ def _value(
 def _density(
     ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, roughness: Any, single: Any, several: Any
 ) -> Any:
-    """Return the density of a cosine about the normal and one about wo's horizontal direction, as 1 : r sinθo/2."""
+    """Return the density of a cosine about the normal, and one about wo's horizontal direction."""
     total = 1.0 + 0.5 * roughness * np.sqrt(ox * ox + oy * oy)
     found = (iz + roughness * _lean(ix, iy, ox, oy)) / (np.pi * total)
     return select((iz > _HORIZON) & (oz > _HORIZON), found, 0.0)
@@ -97,8 +98,8 @@ def _sample(
 class EON(ScalarBSDF):
     """The energy-preserving Oren-Nayar model.
 
-    f = ρ A/π (1 + r s/t) + ρ'/π (1 − E(θi)) (1 − E(θo)) / (1 − Ē), with s = sinθi sinθo cosΔφ and t the larger
-    cosine where s > 0, 1 elsewhere; E is the albedo of the first part for ρ = 1, Ē its mean, and
+    f = ρ A/π (1 + r s/t) + ρ'/π (1 − E(θi)) (1 − E(θo)) / (1 − Ē), with s = sinθi sinθo cosΔφ and t the
+    larger cosine where s > 0, 1 elsewhere; E is the albedo of the first part for ρ = 1, Ē its mean, and
     ρ' = ρ² Ē / (1 − ρ (1 − Ē)).
 
     Parameters
@@ -122,14 +123,14 @@ class EON(ScalarBSDF):
 
     name = "eon"
     SOURCE = SOURCE
-    EXAMPLES = ({}, {"reflectance": 0.5, "roughness": 1.0}, {"roughness": 1.0}, {"roughness": 0.0})
+    EXAMPLES = ({}, {"roughness": 1.0, "reflectance": 1.0}, {"roughness": 0.0, "reflectance": 1.0})
     dimensions: ClassVar[int] = 3
 
-    reflectance: Spectrum = parameter("[0, 1]", "1", "single-scattering albedo", spectral=True, default=1.0)
+    reflectance: Spectrum = parameter("[0, 1]", "1", "single-scattering albedo", spectral=True, default=0.9)
     roughness: float = parameter("[0, 1]", "1", "roughness", default=0.5)
 
     def symbolic(self) -> Twin:
-        """Return the symbolic twin, in the polar angles and azimuths, with E and Ē as the source gives them."""
+        """Return the symbolic twin, in polar angles and azimuths, with E and Ē as the source gives them."""
         import sympy
 
         from radiokit.measure.twin import DIRECTION_SYMBOLS

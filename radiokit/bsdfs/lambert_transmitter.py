@@ -1,7 +1,7 @@
 """Lambert transmitter: a thin sheet that scatters a share of the light evenly above it, and another below.
 
-Leaves, paper, lampshades. It looks the same from both sides and has no thickness, so that no index enters. The
-simplest surface through which light passes, and the exact answer for judges of those.
+Leaves, paper, lampshades. It looks the same from both sides and has no thickness, so that no index enters.
+The simplest surface through which light passes, and the exact answer for judges of those.
 """
 
 from __future__ import annotations

@@ -27,8 +27,8 @@ SOURCE = Source(
     year=1981,
     title="Bidirectional Reflectance Spectroscopy: 1. Theory. Journal of Geophysical Research 86(B4)",
     doi="10.1029/JB086iB04p03039",
-    equation="the single scattering term for isotropic particles without opposition effect, divided by cosθi; "
-    "the law of Lommel (1887) and Seeliger (1888)",
+    equation="the single scattering term for isotropic particles without opposition effect, divided by "
+    "cosθi; the law of Lommel (1887) and Seeliger (1888)",
 )
 
 _HORIZON = 1e-150  # a cosine below this is 0: f grows without bound as both cosines vanish
@@ -55,7 +55,10 @@ def _density(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, albedo: Any) 
 
 @kernel
 def _sample(u0: Any, u1: Any, ox: Any, oy: Any, oz: Any, albedo: Any) -> Any:
-    """Return wi whose cosine solves e z + (1 − e) z² = u, without cancellation, and a weight of at most w/2."""
+    """Return wi, whose cosine z solves e z + (1 − e) z² = u, and a weight of at most w/2.
+
+    The bound is 8z² − 4z + 1 > 0.
+    """
     even = _even(oz)
     z = 2.0 * u0 / (even + np.sqrt(even * even + 4.0 * (1.0 - even) * u0))
     z = select(z < 1.0, z, 1.0)
@@ -117,5 +120,5 @@ class LommelSeeliger(ScalarBSDF):
 
     @property
     def claims(self) -> Claims:
-        """Reciprocal and conserving: the albedo w/2 (1 − μ ln((1 + μ)/μ)) falls with μ, from w/2 at grazing."""
+        """Reciprocal and conserving: the albedo w/2 (1 − μ ln((1 + μ)/μ)) falls with μ, from w/2."""
         return Claims(reciprocity="yes", conserves=True)

@@ -1,9 +1,9 @@
 """Minnaert: powers of the cosines, for surfaces whose edge is darker, or brighter, than Lambert's.
 
-The empirical law of planetary photometry: one exponent k, which is 1 for Lambert and about 0.5 for the full Moon.
-Normalised here so that the albedo is ρ at normal incidence; it is ρ cosᵏ⁻¹θ elsewhere. So it conserves for k ≥ 1,
-and for k < 1 it gains energy, without bound, beyond the angle whose cosine is ρ to the power 1/(1 − k): 84.3° for
-k = 0.9 and ρ = 0.8, 60° for k = 0.5 and ρ = 0.707.
+The empirical law of planetary photometry: one exponent k, which is 1 for Lambert and about 0.5 for the full
+Moon. Normalised here so that the albedo is ρ at normal incidence; it is ρ cosᵏ⁻¹θ elsewhere. So it conserves
+for k ≥ 1, and for k < 1 it gains energy, without bound as θ → 90°, beyond the angle whose cosine is ρ to the
+power 1/(1 − k): 60° for k = 0.5 and ρ = 0.707, 83.8° for k = 0.9 and ρ = 0.8.
 """
 
 from __future__ import annotations
@@ -126,7 +126,7 @@ class Minnaert(ScalarBSDF):
 
     @property
     def claims(self) -> Claims:
-        """Reciprocal; conserving for k ≥ 1, or when it is black; lossless when it is a white Lambert surface."""
+        """Reciprocal; conserving for k ≥ 1, or when it is black; lossless as a white Lambert surface."""
         black = not np.any(self.reflectance)
         return Claims(
             reciprocity="yes",

@@ -1,7 +1,7 @@
 """Oren-Nayar: a rough diffuse surface, made of Lambertian grooves; the short, qualitative form.
 
-For clay, plaster and the Moon: flatter than Lambert towards the edge, and brighter where the light comes from.
-It gains energy when it is bright and not very rough. The albedo rises with the angle, to
+For clay, plaster and the Moon: flatter than Lambert towards the edge, and brighter where light comes from. It
+gains energy when it is bright and not very rough. The albedo rises with the angle, to
 
     ρ (A + B/2) as θ → 90°, with A = 1 − σ²/(2σ² + 0.66) and B = 0.45 σ²/(σ² + 0.09):
 
@@ -31,8 +31,8 @@ SOURCE = Source(
     year=1994,
     title="Generalization of Lambert's Reflectance Model. SIGGRAPH 94",
     doi="10.1145/192161.192213",
-    equation="the qualitative model, with 0.33 in A; the paper's 0.57, a makeshift for the interreflection that "
-    "is left out, is not used",
+    equation="the qualitative model, with 0.33 in A; the paper's 0.57, a makeshift for the interreflection "
+    "that is left out, is not used",
 )
 
 _HORIZON = 1e-150  # a cosine below this is 0: f grows without bound towards two equal directions there
@@ -55,7 +55,7 @@ def _value(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, a: Any, b: Any,
 
 @kernel
 def _density(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, a: Any, b: Any, reflectance: Any) -> Any:
-    """Return the density of a cosine about the normal and one about wo's horizontal direction, as A : B sinθo/2."""
+    """Return the density of a cosine about the normal, and one about wo's horizontal direction."""
     above = (iz > _HORIZON) & (oz > _HORIZON)
     total = a + 0.5 * b * np.sqrt(ox * ox + oy * oy)
     return select(above, (a * iz + b * _lean(ix, iy, ox, oy)) / (np.pi * total), 0.0)
@@ -78,7 +78,9 @@ def _sample(u0: Any, u1: Any, u2: Any, ox: Any, oy: Any, oz: Any, a: Any, b: Any
 
 @dataclass(frozen=True, kw_only=True)
 class OrenNayar(ScalarBSDF):
-    """The qualitative Oren-Nayar model, f = ρ/π (A + B max(0, cosΔφ) sinα tanβ), α = max(θi, θo), β = min(θi, θo).
+    """The qualitative Oren-Nayar model, f = ρ/π (A + B max(0, cosΔφ) sinα tanβ).
+
+    α is the larger of the polar angles and β the smaller.
 
     Parameters
     ----------

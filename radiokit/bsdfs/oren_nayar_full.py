@@ -1,13 +1,13 @@
 """Oren-Nayar in full: the rough diffuse surface with all terms that the authors fitted, and a second bounce.
 
-Darker than the qualitative form away from the light, and with ρ² for what two facets reflect. Take it to see what
-the short form leaves out. Its albedo rises with the angle, from ρ C₁ + 0.17 ρ² σ²/(σ² + 0.13) at normal incidence
-to, as θ → 90°,
+Darker than the qualitative form away from the light, and with ρ² for what two facets reflect. Take it to see
+what the short form leaves out. Its albedo rises with the angle, from ρ C₁ + 0.17 ρ² σ²/(σ² + 0.13) at normal
+incidence to, as θ → 90°,
 
     ρ (C₁ + 0.177197 σ²/(σ² + 0.09)) + 0.17 ρ² σ²/(σ² + 0.13), with C₁ = 1 − σ²/(2σ² + 0.66),
 
-so that for ρ = 1 it gains energy for 0 < σ < 0.6276: 1.05102 at worst, at σ = 0.3044. Where the light comes
-from straight behind at grazing angles the fit turns negative, for σ above 0.664 when ρ is small: there f is 0.
+so that for ρ = 1 it gains energy for 0 < σ < 0.6276: 1.05102 at worst, at σ = 0.3044. At grazing angles,
+straight across from the light, the fit turns negative, for σ above 0.664 when ρ is small: there f is 0.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ SOURCE = Source(
     year=1994,
     title="Generalization of Lambert's Reflectance Model. SIGGRAPH 94",
     doi="10.1145/192161.192213",
-    equation="the functional approximation: C₁, C₂ and C₃ of the direct illumination, and the interreflection "
-    "term; cut off at 0, below which the fit falls",
+    equation="the functional approximation: C₁, C₂ and C₃ of the direct illumination, and the "
+    "interreflection term; cut off at 0, below which the fit falls",
 )
 
 _HORIZON = 1e-150  # a cosine below this is 0: f grows without bound towards two equal directions there
@@ -74,7 +74,7 @@ def _value(
 def _density(
     ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, c1: Any, rough: Any, second: Any, reflectance: Any
 ) -> Any:
-    """Return the density of three lobes: about the normal, about wo's horizontal direction, and an even one."""
+    """Return the density of three lobes: about the normal, about wo's horizontal direction, even."""
     upright, across = c1 + second, ix * ox + iy * oy
     sine = np.sqrt(ox * ox + oy * oy)
     lean = 0.45 * rough * select(across > 0.0, across, 0.0)
@@ -106,8 +106,8 @@ def _sample(
 class OrenNayarFull(ScalarBSDF):
     """The full Oren-Nayar model, with interreflection.
 
-    f = ρ/π (C₁ + C₂ cosΔφ tanβ + C₃ (1 − |cosΔφ|) tan((α + β)/2)) + 0.17 ρ²/π σ²/(σ² + 0.13) (1 − cosΔφ (2β/π)²),
-    or 0 where that is negative, with α the larger of the polar angles and β the smaller.
+    f = ρ/π (C₁ + C₂ cosΔφ tanβ + C₃ (1 − |cosΔφ|) tan((α + β)/2))
+    + 0.17 ρ²/π σ²/(σ² + 0.13) (1 − cosΔφ (2β/π)²), or 0 where that is negative, with α the larger of the polar angles and β the smaller.
 
     Parameters
     ----------
@@ -178,7 +178,7 @@ class OrenNayarFull(ScalarBSDF):
 
     @property
     def claims(self) -> Claims:
-        """Reciprocal; conserving when the limit of the albedo at 90° is at most 1; lossless as a white Lambert."""
+        """Reciprocal; conserving when the albedo's limit at 90° is at most 1; lossless as white Lambert."""
         (c1, rough, second), rho = self._coefficients(), np.asarray(self.reflectance)
         return Claims(
             reciprocity="yes",

@@ -1,8 +1,8 @@
 """Retro: a cosine lobe about the direction that the light came from, as of cats' eyes and road signs.
 
-Phong's lobe turned by half a turn about the normal, so all that is known of that holds: reciprocal, an albedo of
-exactly the reflectance at normal incidence, and less away from it, where the horizon cuts the lobe (0.228 of
-it is left at 80° for an exponent of 10). For judges and integrators it is the lobe that is not where they look.
+Phong's lobe turned by half a turn about the normal, so that all that is known of it holds: reciprocal, an
+albedo of exactly the reflectance at normal incidence, and less away from it, where the horizon cuts the lobe
+(0.228 is left at 80° for an exponent of 10). For judges and integrators, a lobe that is not where they look.
 """
 
 from __future__ import annotations
