@@ -19,7 +19,7 @@ from radiokit.facts.source import Source
 from radiokit.measure.elementary import atan2
 from radiokit.measure.kernels import kernel, select
 from radiokit.measure.twin import Twin
-from radiokit.measure.vectors import from_disk, leaning
+from radiokit.measure.vectors import even, from_disk
 
 __all__ = ["EON"]
 
@@ -29,7 +29,8 @@ SOURCE = Source(
     title="EON: A Practical Energy-Preserving Rough Diffuse BRDF. Journal of Computer Graphics "
     "Techniques 14(1)",
     doi="10.48550/arXiv.2410.18026",
-    equation="listing 1, with the exact directional albedo of the Fujii-Oren-Nayar model",
+    equation="listing 1, with the exact directional albedo of the Fujii-Oren-Nayar model; sampled by its clipped "
+    "linearly transformed cosine",
 )
 
 _HORIZON = 1e-150  # a cosine below this is 0: f grows without bound towards two equal directions there
@@ -50,18 +51,21 @@ def _lost(sine: Any, z: Any) -> Any:
 
 
 @kernel
-def _lean(ix: Any, iy: Any, ox: Any, oy: Any) -> Any:
-    """Return s = sinθi sinθo cosΔφ where it is positive, and 0 elsewhere."""
-    across = ix * ox + iy * oy
-    return select(across > 0.0, across, 0.0)
-
-
-@kernel
 def _value(
-    ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, roughness: Any, single: Any, several: Any
+    ix: Any,
+    iy: Any,
+    iz: Any,
+    ox: Any,
+    oy: Any,
+    oz: Any,
+    roughness: Any,
+    share: Any,
+    single: Any,
+    several: Any,
 ) -> Any:
     above = (iz > _HORIZON) & (oz > _HORIZON)
-    lean = _lean(ix, iy, ox, oy)
+    across = ix * ox + iy * oy  # s
+    lean = select(across > 0.0, across, 0.0)
     higher = select(above, select(iz > oz, iz, oz), 1.0)
     x, y = ix + ox, iy + oy
     less = 0.5 * (x * x + y * y + iz * iz + oz * oz)  # 1 + s, which vanishes straight opposite at grazing
@@ -71,26 +75,88 @@ def _value(
 
 
 @kernel
+def _transform(mu: Any, r: Any) -> Any:
+    """Return a, b, c, d of the matrix ((a, 0, b), (0, c, 0), (d, 0, 1)), and the even share over r^0.1.
+
+    The lobe is a cosine, transformed by it, in the frame where wo has the azimuth 0: the source's fit.
+    """
+    a = 1.0 + r * (0.303392 + (-0.518982 + 0.111709 * mu) * mu + (-0.276266 + 0.335918 * mu) * r)
+    b = r * (-1.16407 + 1.15859 * mu + (0.150815 - 0.150105 * mu) * r) / (mu * mu * mu - 1.43545)
+    c = 1.0 + r * (0.20013 + (-0.506373 + 0.261777 * mu) * mu)
+    d = r * (0.540852 + (-1.01625 + 0.475392 * mu) * mu) / (-1.0743 + (0.0725628 + mu) * mu)
+    return a, b, c, d, 0.162925 + (-0.372058 + (0.538233 - 0.290822 * mu) * mu) * mu
+
+
+@kernel
+def _azimuth(ox: Any, oy: Any) -> Any:
+    """Return cosine and sine of wo's azimuth; 1 and 0 at the pole."""
+    length = np.sqrt(ox * ox + oy * oy)
+    inverse = 1.0 / select(length > 0.0, length, 1.0)
+    return select(length > 0.0, ox * inverse, 1.0), oy * inverse
+
+
+@kernel
 def _density(
-    ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, roughness: Any, single: Any, several: Any
+    ix: Any,
+    iy: Any,
+    iz: Any,
+    ox: Any,
+    oy: Any,
+    oz: Any,
+    roughness: Any,
+    share: Any,
+    single: Any,
+    several: Any,
 ) -> Any:
-    """Return the density of a cosine about the normal, and one about wo's horizontal direction."""
-    total = 1.0 + 0.5 * roughness * np.sqrt(ox * ox + oy * oy)
-    found = (iz + roughness * _lean(ix, iy, ox, oy)) / (np.pi * total)
+    """Return the density of the transformed cosine, cut at the horizon, and of an even lobe."""
+    a, b, c, d, part = _transform(abs(oz), roughness)
+    part = part * share
+    tx, ty = _azimuth(ox, oy)
+    along, across = ix * tx + iy * ty, iy * tx - ix * ty
+    inner = a - b * d
+    hx, hy, hz = c * (along - b * iz), inner * across, c * (a * iz - d * along)  # the adjugate's image
+    square, size = hx * hx + hy * hy + hz * hz, c * inner
+    kept = 0.5 * (1.0 + 1.0 / np.sqrt(1.0 + d * d))  # of the disk that the cosine projects to
+    ratio = size / select(square > 0.0, square, 1.0)
+    lobe = ratio * ratio * select(hz > 0.0, hz, 0.0) / (np.pi * kept)
+    found = part / (2.0 * np.pi) + (1.0 - part) * lobe
     return select((iz > _HORIZON) & (oz > _HORIZON), found, 0.0)
 
 
 @kernel
 def _sample(
-    u0: Any, u1: Any, u2: Any, ox: Any, oy: Any, oz: Any, roughness: Any, single: Any, several: Any
+    u0: Any,
+    u1: Any,
+    u2: Any,
+    ox: Any,
+    oy: Any,
+    oz: Any,
+    roughness: Any,
+    share: Any,
+    single: Any,
+    several: Any,
 ) -> Any:
-    """Return wi from one of the two lobes, and f cosθi / pdf, which is bounded."""
+    """Return wi from one of the two lobes, and f cosθi / pdf, at most about 1.5.
+
+    Source: the same paper's listing of clipped linearly transformed cosine sampling.
+    """
+    a, b, c, d, part = _transform(abs(oz), roughness)
     x, y, z = from_disk(u0, u1)
-    lx, ly, lz = leaning(x, y, z, ox, oy)
-    upright = u2 * (1.0 + 0.5 * roughness * np.sqrt(ox * ox + oy * oy)) < 1.0
-    wx, wy, wz = select(upright, x, lx), select(upright, y, ly), select(upright, z, lz)
-    density = _density(wx, wy, wz, ox, oy, oz, roughness, single, several)
-    value = _value(wx, wy, wz, ox, oy, oz, roughness, single, several)
+    ex, ey, ez = even(x, y, z)
+    kept, chord = 0.5 * (1.0 + 1.0 / np.sqrt(1.0 + d * d)), np.sqrt((1.0 - y) * (1.0 + y))
+    hx = -(chord + kept * (x - chord))  # the part of the disk above the transformed horizon
+    up = (chord - hx) * (chord + hx)
+    hz = np.sqrt(select(up > 0.0, up, 0.0))
+    along, across, height = a * hx + b * hz, c * y, d * hx + hz
+    length = np.sqrt(along * along + across * across + height * height)
+    length = select(length > 0.0, length, 1.0)
+    tx, ty = _azimuth(ox, oy)
+    spread = u2 < part * share
+    wx = select(spread, ex, (along * tx - across * ty) / length)
+    wy = select(spread, ey, (along * ty + across * tx) / length)
+    wz = select(spread, ez, height / length)
+    density = _density(wx, wy, wz, ox, oy, oz, roughness, share, single, several)
+    value = _value(wx, wy, wz, ox, oy, oz, roughness, share, single, several)
     return wx, wy, wz, value * wz / select(density > 0.0, density, 1.0)
 
 
@@ -157,13 +223,13 @@ class EON(ScalarBSDF):
         return Twin(first + several if self.roughness else first, {rho: self.reflectance, r: self.roughness})
 
     def kernels(self) -> Kernels:
-        """Return the kernels, whose constants are r and the two parts' factors."""
+        """Return the kernels, whose constants are r, r^0.1 and the two parts' factors."""
         rho, r = np.asarray(self.reflectance, dtype=float), self.roughness
         a = 1.0 / (1.0 + _C1 * r)
         missing = a * r * (_C1 - _C2)  # 1 − Ē
         tint = rho * rho * (1.0 - missing) / (1.0 - rho * missing)
         several = tint * (a * r / ((_C1 - _C2) * np.pi**3))
-        return Kernels(_value, _density, _sample, (r, rho * (a / np.pi), several))
+        return Kernels(_value, _density, _sample, (r, r**0.1, rho * (a / np.pi), several))
 
     def lobe_width(self) -> float:
         """Return 1, the width of a diffuse lobe."""

@@ -107,7 +107,8 @@ class OrenNayarFull(ScalarBSDF):
     """The full Oren-Nayar model, with interreflection.
 
     f = ρ/π (C₁ + C₂ cosΔφ tanβ + C₃ (1 − |cosΔφ|) tan((α + β)/2))
-    + 0.17 ρ²/π σ²/(σ² + 0.13) (1 − cosΔφ (2β/π)²), or 0 where that is negative, with α the larger of the polar angles and β the smaller.
+    + 0.17 ρ²/π σ²/(σ² + 0.13) (1 − cosΔφ (2β/π)²), or 0 where that is negative; α is the larger of the polar
+    angles and β the smaller.
 
     Parameters
     ----------
