@@ -29,8 +29,8 @@ SOURCE = Source(
     title="EON: A Practical Energy-Preserving Rough Diffuse BRDF. Journal of Computer Graphics "
     "Techniques 14(1)",
     doi="10.48550/arXiv.2410.18026",
-    equation="listing 1, with the exact directional albedo of the Fujii-Oren-Nayar model; sampled by its clipped "
-    "linearly transformed cosine",
+    equation="listing 1, with the exact directional albedo of the Fujii-Oren-Nayar model; sampled by its "
+    "clipped linearly transformed cosine",
 )
 
 _HORIZON = 1e-150  # a cosine below this is 0: f grows without bound towards two equal directions there

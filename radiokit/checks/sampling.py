@@ -14,7 +14,7 @@ from radiokit.contracts.bsdf import BSDF, FloatArray
 from radiokit.facts.errors import NonFiniteError
 from radiokit.facts.verdict import Evidence, Outcome, Verdict, Witness
 from radiokit.measure.quadrature import hemisphere
-from radiokit.measure.slope import find_lobe, gauss_legendre, mirrored, slope_inverse, slope_map
+from radiokit.measure.slope import find_lobe, gauss_legendre, mirrored, slope_inverse, slope_map, turned
 
 __all__ = ["ANGLES_DEG", "LEVEL", "sampling"]
 
@@ -153,14 +153,17 @@ def _distribution(
     total, error = 0.0, 0.0
     expected, observed = [], []
     for piece, place in zip(pieces, places, strict=True):
+        retro = False
 
         def density(w: FloatArray, piece: Part = piece) -> FloatArray:
+            w = turned(w) if retro else w  # noqa: B023  a lobe about wo is looked at from the other side
             return np.asarray(piece.density(np.broadcast_to(up, w.shape), w), dtype=float)
 
         aim = piece.aim(up)
         width = None if piece.through else f.lobe_width()
         if width is None:
-            width = find_lobe(density, aim).width
+            lobe = find_lobe(density, aim)
+            width, retro = lobe.width, lobe.retro
         try:
             found = hemisphere(density, wo=aim, width=width, rtol=1e-7, max_evaluations=most)
         except NonFiniteError as problem_found:
@@ -169,6 +172,7 @@ def _distribution(
         cells, spent = _cell_shares(density, aim, width)
         row["evaluations"] += found.evaluations + spent
         here = place[(place[:, 2] > 0) & ~special]
+        here = turned(here) if retro else here
         expected.append(cells)
         observed.append(np.bincount(_cell_of(here, aim, width), minlength=len(cells))[: len(cells)])
     row["pdf_integral"] = total
