@@ -79,7 +79,7 @@ class Retro(ScalarBSDF):
 
     name = "retro"
     SOURCE = SOURCE
-    EXAMPLES = ({}, {"exponent": 1.0}, {"exponent": 300.0, "reflectance": 0.5})
+    EXAMPLES = ({}, {"exponent": 1.0}, {"exponent": 100.0, "reflectance": 0.5})
 
     exponent: float = parameter("[1, 1e6]", "1", "exponent of the lobe's cosine", default=10.0)
     reflectance: Spectrum = parameter("[0, 1]", "1", "albedo at normal incidence", spectral=True, default=1.0)
