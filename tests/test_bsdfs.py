@@ -566,13 +566,13 @@ def test_the_samples_follow_the_pdf(name, parameters, theta_deg, rng):
 
 
 def test_a_sampler_that_is_off_is_rejected(rng):
-    """Planted: GGX sampled for a width a twentieth too large, and a radius that is not a square root."""
+    """Planted: GGX sampled for a width a tenth too large, and a radius that is not a square root."""
 
     class Wide(GGX):
         name = ""
 
         def sample(self, u, wo):
-            return GGX(alpha=1.05 * self.alpha).sample(u, wo)
+            return GGX(alpha=1.1 * self.alpha).sample(u, wo)
 
     class Crowded(Lambert):
         name = ""
