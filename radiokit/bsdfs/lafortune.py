@@ -22,7 +22,7 @@ from radiokit.measure.elementary import exp, log
 from radiokit.measure.kernels import kernel, select
 from radiokit.measure.slope import gauss_legendre
 from radiokit.measure.twin import Twin
-from radiokit.physics.cosine import about, median_slope
+from radiokit.physics.cosine_lobe import lobe_sample, median_slope
 
 __all__ = ["Lafortune"]
 
@@ -87,7 +87,7 @@ def _sample(
 ) -> Any:
     """Return wi about the lobe's axis, and ρ |C wo|ⁿ (n + 2)/(n + 1) cosθi."""
     x, y, z, length = _axis(ox, oy, oz, cx, cy, cz)
-    wx, wy, wz = about(u0, u1, x, y, z, exponent)
+    wx, wy, wz = lobe_sample(u0, u1, x, y, z, exponent)
     share = rho * ((exponent + 2.0) / (exponent + 1.0) * _power(length, exponent))
     return wx, wy, wz, select((wz > 0.0) & (oz > 0.0), share * wz, 0.0)
 

@@ -18,7 +18,7 @@ from radiokit.contracts.scalar import Kernels, ScalarBSDF
 from radiokit.facts.source import Source
 from radiokit.measure.kernels import kernel, select
 from radiokit.measure.twin import Twin
-from radiokit.physics.cosine import about, median_slope, mirror_lobe
+from radiokit.physics.cosine_lobe import lobe_sample, median_slope, mirror_lobe
 
 __all__ = ["Phong"]
 
@@ -42,11 +42,8 @@ def _density(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, exponent: Any
 
 @kernel
 def _sample(u0: Any, u1: Any, ox: Any, oy: Any, oz: Any, exponent: Any, reflectance: Any) -> Any:
-    """Return wi about the mirror direction, and ρ (n + 2)/(n + 1) cosθi.
-
-    Source: Lafortune & Willems (1994), section 3, the sampling of the specular lobe.
-    """
-    wx, wy, wz = about(u0, u1, -ox, -oy, oz, exponent)
+    """Return wi about the mirror direction, and ρ (n + 2)/(n + 1) cosθi."""
+    wx, wy, wz = lobe_sample(u0, u1, -ox, -oy, oz, exponent)
     scale = reflectance * (exponent + 2.0) / (exponent + 1.0)
     return wx, wy, wz, select((wz > 0.0) & (oz > 0.0), scale * wz, 0.0)
 

@@ -21,7 +21,7 @@ from radiokit.contracts.scalar import Kernels, ScalarBSDF
 from radiokit.facts.source import Source
 from radiokit.measure.kernels import kernel, select
 from radiokit.measure.twin import Twin
-from radiokit.physics.cosine import about, median_slope, mirror_lobe
+from radiokit.physics.cosine_lobe import lobe_sample, median_slope, mirror_lobe
 from radiokit.physics.half import HORIZON
 
 __all__ = ["PhongOriginal"]
@@ -51,7 +51,7 @@ def _density(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, exponent: Any
 @kernel
 def _sample(u0: Any, u1: Any, ox: Any, oy: Any, oz: Any, exponent: Any, coefficient: Any) -> Any:
     """Return wi about the mirror direction, and 2π k_s/(n + 1): the cosines cancel."""
-    wx, wy, wz = about(u0, u1, -ox, -oy, oz, exponent)
+    wx, wy, wz = lobe_sample(u0, u1, -ox, -oy, oz, exponent)
     share = coefficient * (2.0 * np.pi) / (exponent + 1.0)
     return wx, wy, wz, select((wz > HORIZON) & (oz > HORIZON), share, 0.0)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from radiokit.contracts.bsdf import BSDF, FloatArray
 from radiokit.facts.errors import NonFiniteError
 from radiokit.facts.verdict import Evidence, Outcome, Verdict, Witness
 from radiokit.measure.quadrature import hemisphere
-from radiokit.measure.slope import find_lobe, gauss_legendre, mirrored, slope_inverse, slope_map
+from radiokit.measure.slope import find_lobe, gauss_legendre, mirrored, slope_inverse, slope_map, turned
 
 __all__ = ["ANGLES_DEG", "LEVEL", "sampling"]
 
@@ -153,14 +154,12 @@ def _distribution(
     total, error = 0.0, 0.0
     cells, observed = [], []
     for piece, place in zip(pieces, places, strict=True):
-
-        def density(w: FloatArray, piece: Part = piece) -> FloatArray:
-            return np.asarray(piece.density(np.broadcast_to(up, w.shape), w), dtype=float)
-
-        aim = piece.aim(up)
+        aim, retro = piece.aim(up), False
         width = None if piece.through else f.lobe_width()
         if width is None:
-            width = find_lobe(density, aim).width
+            lobe = find_lobe(_density_of(piece, up), aim)
+            width, retro = lobe.width, lobe.retro
+        density = _density_of(piece, up, retro)
         try:
             found = hemisphere(density, wo=aim, width=width, rtol=1e-7, max_evaluations=most)
         except NonFiniteError as problem_found:
@@ -169,6 +168,7 @@ def _distribution(
         row["evaluations"] += found.evaluations
         cells.append((density, aim, width))
         here = place[(place[:, 2] > 0) & ~special]
+        here = turned(here) if retro else here
         count = 2 * CELLS[0] * CELLS[1]
         observed.append(np.bincount(_cell_of(here, aim, width), minlength=count)[:count])
     row["pdf_integral"] = total
@@ -258,6 +258,16 @@ def _with_rest(expected: FloatArray, observed: Any, samples: int) -> tuple[Float
     if lost < 1e-6 and rest == 0:
         return np.maximum(expected / expected.sum(), 0.0), observed
     return np.maximum(np.append(expected, lost), 0.0), np.append(observed, rest)
+
+
+def _density_of(piece: Part, up: FloatArray, retro: bool = False) -> Callable[[FloatArray], FloatArray]:
+    """Return the pdf for ``up``; that of a lobe about wo as it looks from the other side."""
+
+    def density(w: FloatArray) -> FloatArray:
+        w = turned(w) if retro else w
+        return np.asarray(piece.density(np.broadcast_to(up, w.shape), w), dtype=float)
+
+    return density
 
 
 def _cell_shares(density: Any, wo: FloatArray, width: float, nodes: int) -> tuple[FloatArray, int]:

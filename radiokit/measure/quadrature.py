@@ -245,7 +245,9 @@ def _confirmed(integrand: Integrand, wo: FloatArray, lobe: Lobe) -> Lobe:
     other = find_lobe(integrand, wo, around=(False,))
     there = _scan(lambda w: integrand(turned(w)), wo, lobe.core)
     here = _scan(integrand, wo, other.core)
-    best = other if np.max(here.spread) < np.max(there.spread) else lobe
+    least = np.abs(there.mean) - DOUBT * there.spread
+    blind = np.any(np.abs(here.mean) + DOUBT * here.spread < least)  # it looks even where nothing is seen
+    best = other if not blind and np.max(here.spread) < np.max(there.spread) else lobe
     return replace(best, evaluations=other.evaluations + 2 * SCAN)
 
 
