@@ -19,7 +19,7 @@ from radiokit.contracts.bsdf import bsdf
 from radiokit.facts.directions import spherical_to_cartesian
 from radiokit.facts.errors import NonFiniteError, ParameterError
 from radiokit.measure import elementary, passes
-from radiokit.measure.elementary import exp, expm1, key_of, log, log1p, sincos, stream, uniform
+from radiokit.measure.elementary import atan2, exp, expm1, key_of, log, log1p, sincos, stream, uniform
 from radiokit.measure.fused import BLOCK, FusedDraw, fused_mean, points
 from radiokit.measure.kernels import Kernel, kernel, last, numba_runs, select
 from radiokit.measure.moments import Moments
@@ -133,6 +133,32 @@ def test_log_and_expm1_agree_with_50_digits(mode, rng):
     x = np.concatenate([[-0.29, 0.41, -0.5, 1.0, 1e9], 10.0 ** rng.uniform(-300, 3, 500)])
     x = np.concatenate([x, -(10.0 ** rng.uniform(-300, -0.001, 500)), rng.uniform(-0.5, 0.7, 500)])
     assert worst_ulps(apply(log1p, mode, x), x, mpmath.log1p) <= 3
+
+
+def plane(rng):
+    """Return x and y of points in every direction: on the axes and diagonals, near them, at any distance."""
+    angle = np.concatenate([rng.uniform(-np.pi, np.pi, 600), np.arange(-8, 9) * (np.pi / 8)])
+    angle = np.concatenate([angle, angle[-17:] + 1e-9, 10.0 ** rng.uniform(-300, 0, 200)])
+    length = 10.0 ** rng.uniform(-8, 8, len(angle))
+    x, y = length * np.cos(angle), length * np.sin(angle)
+    axes = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (0.0, 0.0), (1.0, 1.0), (-3.0, 3.0)]
+    return tuple(np.concatenate([a, b]) for a, b in zip((x, y), np.array(axes).T, strict=True))
+
+
+def worst_atan2(found, x, y):
+    return worst_ulps(found, range(len(x)), lambda i: mpmath.atan2(float(y[int(i)]), float(x[int(i)])))
+
+
+@both
+def test_atan2_agrees_with_50_digits(mode, rng):
+    x, y = plane(rng)
+    assert worst_atan2(apply(atan2, mode, y, x), x, y) <= 3
+
+
+def test_atan2_with_a_term_less_is_rejected(rng, monkeypatch):
+    x, y = plane(rng)
+    monkeypatch.setattr(elementary, "_A11", 0.0)
+    assert worst_atan2(atan2.plain(y, x), x, y) > 3
 
 
 @both

@@ -243,3 +243,42 @@ def test_twenty_hard_lobes_to_twelve_digits_in_4096_evaluations(rtol):
             assert found.evaluations <= 4096
             assert abs(found.value - exact) <= max(1e-12, rtol / 10) * exact
             assert abs(found.value - exact) <= found.error + 3e-13 * exact
+
+
+# Diffuse surfaces that bend at θi = θo and at right angles to wo
+
+
+def rough_diffuse(wi, wo):
+    """Oren and Nayar's qualitative law for σ = 0.3, times cosθ."""
+    sigma2 = 0.09
+    theta = np.arctan2(np.hypot(wi[:, 0], wi[:, 1]), wi[:, 2]), np.arctan2(np.hypot(*wo[:2]), wo[2])
+    facing = np.maximum(wi[:, 0] * wo[0] + wi[:, 1] * wo[1], 0) / np.maximum(np.hypot(*wo[:2]), 1e-300)
+    facing = facing / np.maximum(np.hypot(wi[:, 0], wi[:, 1]), 1e-300)
+    bent = facing * np.sin(np.maximum(*theta)) * np.tan(np.minimum(*theta))
+    law = 1 - 0.5 * sigma2 / (sigma2 + 0.33) + 0.45 * sigma2 / (sigma2 + 0.09) * bent
+    return law / np.pi * wi[:, 2]
+
+
+@pytest.mark.parametrize("theta_deg", [0.0, 30.0, 60.0, 80.0, 89.0, 89.99])
+@pytest.mark.parametrize("phi", [0.0, 0.7])
+def test_a_rough_diffuse_surface_takes_few_evaluations(theta_deg, phi):
+    theta = np.radians(theta_deg)
+    wo = np.array([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)])
+    s, c = np.sin(theta), np.cos(theta)
+    a, b = 1 - 0.5 * 0.09 / 0.42, 0.45 * 0.09 / 0.18
+    exact = a + b / np.pi * (s * (theta - s * c) + 2 / 3 * s / c * (1 - s**3))
+    found = hemisphere(lambda w: rough_diffuse(w, wo), wo=wo, rtol=1e-10)
+    assert found.converged
+    assert found.evaluations < 40_000
+    assert abs(found.value - exact) <= found.error < 1e-12
+
+
+@pytest.mark.parametrize("turn", [0.05, 0.5, 1.3])
+def test_polar_rules_are_not_believed_where_they_are_cut_in_the_wrong_place(turn):
+    """Planted: the same surface with its kinks turned away from where the rules are cut."""
+    wo = np.array([0.6, 0.0, 0.8])
+    away = np.array([0.6 * np.cos(turn), 0.6 * np.sin(turn), 0.8])
+    found = hemisphere(lambda w: rough_diffuse(w, away), wo=wo, rtol=1e-8)
+    exact = hemisphere(lambda w: rough_diffuse(w, away), wo=away, rtol=1e-10)
+    assert found.method != "polar quadrature"
+    assert abs(found.value - exact.value) <= found.error + exact.error

@@ -144,6 +144,7 @@ class GGX(ScalarBSDF):
     """
 
     name = "ggx"
+    kind = "microfacet"
     SOURCE = SOURCE
     EXAMPLES = ({}, {"alpha": 1.0}, {"alpha": 0.01}, {"alpha": 0.001}, {"alpha": 0.2, "eta": 0.2, "k": 3.9})
 

@@ -61,6 +61,7 @@ class Lambert(ScalarBSDF):
     """
 
     name = "lambert"
+    kind = "diffuse"
     SOURCE = SOURCE
     EXAMPLES = ({}, {"reflectance": 0.5}, {"reflectance": 0.0})
 

@@ -61,6 +61,7 @@ class Mirror(ScalarBSDF):
     """
 
     name = "mirror"
+    kind = "delta"
     SOURCE = SOURCE
     EXAMPLES = ({}, {"reflectance": 0.5})
 

@@ -16,10 +16,9 @@ from radiokit.contracts.bsdf import Claims
 from radiokit.contracts.parameters import Spectrum, parameter
 from radiokit.contracts.scalar import Kernels, ScalarBSDF
 from radiokit.facts.source import Source
-from radiokit.measure.elementary import exp, expm1, log, log1p, sincos
 from radiokit.measure.kernels import kernel, select
 from radiokit.measure.twin import Twin
-from radiokit.measure.vectors import from_frame
+from radiokit.physics.cosine_lobe import lobe_sample, median_slope, mirror_lobe
 
 __all__ = ["Phong"]
 
@@ -32,40 +31,19 @@ SOURCE = Source(
 
 
 @kernel
-def _lobe(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, exponent: Any) -> Any:
-    """Return cosⁿα, or 0 below the horizon.
-
-    Near the mirror direction r, cosα has too few digits for a large n; |r − wi|² = 2(1 − cosα) has them.
-    """
-    x, y, z = ix + ox, iy + oy, iz - oz
-    depth = 0.5 * (x * x + y * y + z * z)
-    cosine = iz * oz - ix * ox - iy * oy
-    lit = (cosine > 0.0) & (iz > 0.0) & (oz > 0.0)
-    near = depth < 0.5
-    log_cosine = select(near, log1p(-select(near, depth, 0.0)), log(select(lit, cosine, 1.0)))
-    return select(lit, exp(exponent * log_cosine), 0.0)
-
-
-@kernel
 def _value(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, exponent: Any, reflectance: Any) -> Any:
-    return reflectance * (exponent + 2.0) / (2.0 * np.pi) * _lobe(ix, iy, iz, ox, oy, oz, exponent)
+    return reflectance * (exponent + 2.0) / (2.0 * np.pi) * mirror_lobe(ix, iy, iz, ox, oy, oz, exponent)
 
 
 @kernel
 def _density(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, exponent: Any, reflectance: Any) -> Any:
-    return (exponent + 1.0) / (2.0 * np.pi) * _lobe(ix, iy, iz, ox, oy, oz, exponent)
+    return (exponent + 1.0) / (2.0 * np.pi) * mirror_lobe(ix, iy, iz, ox, oy, oz, exponent)
 
 
 @kernel
 def _sample(u0: Any, u1: Any, ox: Any, oy: Any, oz: Any, exponent: Any, reflectance: Any) -> Any:
-    """Return wi about the mirror direction, and ρ (n + 2)/(n + 1) cosθi.
-
-    Source: Lafortune & Willems (1994), section 3, the sampling of the specular lobe.
-    """
-    loss = -expm1(log(1.0 - u0) / (exponent + 1.0))  # 1 − cosα; the difference is exact
-    radius = np.sqrt(loss * (2.0 - loss))
-    sine, cosine = sincos(u1)
-    wx, wy, wz = from_frame(radius * cosine, radius * sine, 1.0 - loss, -ox, -oy, oz)
+    """Return wi about the mirror direction, and ρ (n + 2)/(n + 1) cosθi."""
+    wx, wy, wz = lobe_sample(u0, u1, -ox, -oy, oz, exponent)
     scale = reflectance * (exponent + 2.0) / (exponent + 1.0)
     return wx, wy, wz, select((wz > 0.0) & (oz > 0.0), scale * wz, 0.0)
 
@@ -88,6 +66,7 @@ class Phong(ScalarBSDF):
     """
 
     name = "phong"
+    kind = "glossy"
     SOURCE = SOURCE
     EXAMPLES = ({}, {"exponent": 1.0}, {"exponent": 1000.0, "reflectance": 0.5})
 
@@ -117,10 +96,8 @@ class Phong(ScalarBSDF):
         return self.exponent >= 4.0
 
     def lobe_width(self) -> float:
-        """Return the median slope of the half vectors, tan(α/2) for half the lobe's flux within 2α."""
-        log_cosine = -np.log(2.0) / (self.exponent + 1.0)
-        alpha = np.arctan2(np.sqrt(-np.expm1(2.0 * log_cosine)), np.exp(log_cosine))
-        return float(np.tan(0.5 * alpha))
+        """Return the median slope of the half vectors, tan(α/2) for half the lobe's flux within α."""
+        return median_slope(self.exponent)
 
     @property
     def claims(self) -> Claims:

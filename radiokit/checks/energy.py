@@ -155,8 +155,9 @@ def _split(row: dict[str, Any]) -> str:
 
 
 def _lossless(found: dict[str, Extremum], tolerance: float) -> bool:
-    """Whether even the smallest albedo is 1."""
-    return all(abs(item.least.value - 1) <= tolerance + item.least.error for item in found.values())
+    """Whether both the smallest albedo and the largest are 1."""
+    ends = [end for item in found.values() for end in (item.least, item.estimate)]
+    return all(abs(end.value - 1) <= tolerance + end.error for end in ends)
 
 
 def _range(worst: Extremum, tolerance: float) -> list[float]:

@@ -6,7 +6,7 @@ import dataclasses
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -21,9 +21,15 @@ if TYPE_CHECKING:
     from radiokit.measure.kernels import Kernel
     from radiokit.measure.twin import Twin
 
-__all__ = ["BSDF", "REGISTRY", "Claims", "DeltaLobe", "FloatArray", "bsdf", "list_bsdfs"]
+__all__ = ["BSDF", "KINDS", "REGISTRY", "Claims", "DeltaLobe", "FloatArray", "Kind", "bsdf", "list_bsdfs"]
 
 FloatArray = npt.NDArray[np.float64]
+
+Kind = Literal["", "diffuse", "glossy", "microfacet", "delta", "transmission", "principled"]
+"""What a model is in one word: a broad lobe, an empirical narrow one, one of facets, a mirror's, one that
+light passes, or many in one for artists. Empty where a model does not say."""
+
+KINDS: tuple[Kind, ...] = get_args(Kind)[1:]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,8 +80,8 @@ class BSDF(ABC):
     EXAMPLES: ClassVar[tuple[Mapping[str, Any], ...]] = ({},)
     """Parameters, easy and hard, with which ``radiokit validate`` puts the model before the judges."""
 
-    isotropic: ClassVar[bool] = True
-    """Whether f is unchanged by a turn about the normal, and by mirroring at the plane of incidence."""
+    kind: ClassVar[Kind] = ""
+    """What the model is in one word, for the table of models."""
 
     transmissive: ClassVar[bool] = False
     """Whether light passes: then either direction may be below the horizon, and the cosine is |cosθ|."""
@@ -120,6 +126,11 @@ class BSDF(ABC):
     def delta_lobes(self, wo: FloatArray) -> tuple[DeltaLobe, ...]:
         """Return the delta lobes for ``wo`` (N, 3); none by default."""
         return ()
+
+    @property
+    def isotropic(self) -> bool:
+        """Whether f is unchanged by a turn about the normal, and by mirroring at the plane of incidence."""
+        return True
 
     @property
     def smooth(self) -> bool:
@@ -175,6 +186,31 @@ class BSDF(ABC):
         if not dataclasses.is_dataclass(self):
             return {}
         return {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+
+    __array_ufunc__: ClassVar[None] = None
+    """NumPy's numbers and arrays leave ``number * f`` to f."""
+
+    def __mul__(self, factor: Any) -> BSDF:
+        """Return factor · f, see ``scaled``.
+
+        >>> 0.5 * bsdf("lambert") + 0.5 * bsdf("mirror")
+        0.5*Lambert(reflectance=1.0) + 0.5*Mirror(reflectance=1.0)
+        """
+        from radiokit.contracts.mixture import multiplied
+
+        return NotImplemented if isinstance(factor, BSDF) else multiplied(self, factor)
+
+    __rmul__ = __mul__
+
+    def __add__(self, other: Any) -> BSDF:
+        """Return the sum of two BSDFs, see ``mixture``."""
+        from radiokit.contracts.mixture import added
+
+        return added(self, other) if isinstance(other, BSDF) else NotImplemented
+
+    def __radd__(self, other: Any) -> BSDF:
+        """Return f for 0 + f, with which ``sum`` begins."""
+        return self if isinstance(other, int) and other == 0 else NotImplemented
 
     def __call__(self, wi: npt.ArrayLike, wo: npt.ArrayLike) -> Any:
         """Return f(wi, wo) [sr⁻¹] for checked directions of any broadcastable shape ``(..., 3)``.

@@ -9,7 +9,7 @@ import numpy as np
 
 from radiokit.measure.kernels import kernel, select
 
-__all__ = ["exp", "expm1", "key_of", "log", "log1p", "sincos", "stream", "uniform"]
+__all__ = ["atan2", "exp", "expm1", "key_of", "log", "log1p", "sincos", "stream", "uniform"]
 
 # Random numbers: a hash of seed, dimension and index, so that any of them is had without those before it.
 
@@ -170,3 +170,34 @@ def expm1(x: Any) -> Any:
     """
     power, p = _powers(x)
     return power * p + (power - 1.0)
+
+
+# Minimax fit of (atan(t)/t − 1)/t² in t² for |t| ≤ tan(π/8), of error 2e-18.
+_QUARTER, _HALF, _TAN_EIGHTH = 0.25 * np.pi, 0.5 * np.pi, 0.41421356237309503
+_A0, _A1, _A2, _A3 = -0.3333333333333333, 0.19999999999999804, -0.14285714285659779, 0.11111111105150588
+_A4, _A5, _A6, _A7 = -0.09090908753259112, 0.07692296368042296, -0.0666642476020052, 0.05878927554473807
+_A8, _A9, _A10, _A11 = -0.05230443640686948, 0.045515447340221615, -0.03456931506332609, 0.016284375050043393
+
+
+@kernel
+def atan2(y: Any, x: Any) -> Any:
+    """Return the angle of the point (x, y) from the x axis, in [-π, π], to 3 units in the last place.
+
+    It is 0 for the origin.
+
+    >>> float(atan2(1.0, -1.0)) == 0.75 * np.pi, float(atan2(1e-300, 1.0))
+    (True, 1e-300)
+    """
+    across, along = abs(y), abs(x)
+    steep = across > along
+    low, high = select(steep, along, across), select(steep, across, along)
+    far = low > _TAN_EIGHTH * high
+    below = select(far, low + high, high)
+    t = select(far, low - high, low) / select(below > 0.0, below, 1.0)
+    z = t * t
+    tail = _A6 + z * (_A7 + z * (_A8 + z * (_A9 + z * (_A10 + z * _A11))))
+    tail = _A0 + z * (_A1 + z * (_A2 + z * (_A3 + z * (_A4 + z * (_A5 + z * tail)))))
+    angle = select(far, _QUARTER, 0.0) + (t + t * z * tail)
+    angle = select(steep, _HALF - angle, angle)
+    angle = select(x < 0.0, np.pi - angle, angle)
+    return select(y < 0.0, -angle, angle)

@@ -5,25 +5,24 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
+from radiokit.measure.box import bent, box
 from radiokit.measure.converge import GK21, ROUNDING, Integrand, RuleSum, adaptive, apply_rule, converge
 from radiokit.measure.lattice import kronecker
+from radiokit.measure.polar import POLAR_SIZES, polar_rule
 from radiokit.measure.ridge import Ridge, find_ridge
-from radiokit.measure.slope import Lobe, find_lobe, gauss_legendre, mirrored, slope_map, slope_rule, turned
+from radiokit.measure.slope import Lobe, find_lobe, mirrored, slope_map, slope_rule, turned
 from radiokit.measure.split import kinked, split_rule
 
 __all__ = ["box", "hemisphere", "missed"]
 
 FloatArray = npt.NDArray[np.float64]
-
-SIZES = (16, 24, 32, 48, 64, 96, 128, 192)
-"""Nodes along each axis of a rectangle, tried in turn until rules agree."""
 
 SLOPE_SIZES: tuple[tuple[int, int], ...] = (
     (20, 14),
@@ -70,6 +69,12 @@ RULES = 130_000
 
 STEEP = 0.5
 """cosθo above which they do: a grazing lobe is long in slope without being so on the sphere."""
+
+BROAD, BRIEF = 0.3, 20_000
+"""Width above which a lobe is diffuse; evaluations in slope space after which polar rules are tried on it."""
+
+CERTAIN = 1e-11
+"""Relative agreement of polar rules that is believed: what they are cut for ends in digits, at once."""
 
 LOOK = 512
 """Points at which the shape of a smooth lobe is looked at, where it may be long and narrow."""
@@ -166,9 +171,10 @@ def hemisphere(
             return split_rule(wo, width * factor, n, ridge=ridge, symmetric=symmetric)
         return slope_rule(wo, width * factor, n, symmetric=symmetric)
 
-    def rules() -> Iterator[RuleSum]:
+    most = min(max_evaluations, max(RULES, max_evaluations // 4))  # the rest is for refinement
+
+    def rules(most: int = most) -> Iterator[RuleSum]:
         used = spent
-        most = min(max_evaluations, max(RULES, max_evaluations // 4))  # the rest is for refinement
         for k, (n, factor) in enumerate(zip(sizes, WIDTHS, strict=False)):
             least = (1.5 if cut else 1.0) * sides * n[0] * n[1]
             if k > 2 and used + least > most:
@@ -181,8 +187,20 @@ def hemisphere(
 
     # A direction is known to an eps; a narrow lobe magnifies that, and a grazing one more.
     rounding = ROUNDING + STEEPNESS / (core * float(wo[2]))
-    found = converge(rules(), rtol, atol, smooth=smooth, rounding=rounding)
+    compare = partial(converge, smooth=smooth, rounding=rounding)
     method = "slope-space quadrature"
+    if smooth or core < BROAD or max_evaluations < 4 * BRIEF:
+        found = compare(rules(), rtol, atol)
+    else:
+        found = compare(rules(BRIEF), rtol, atol)
+        if not found.converged:
+            sums = (apply_rule(integrand, *polar_rule(wo, n, symmetric=symmetric)) for n in POLAR_SIZES)
+            polar = compare(sums, min(rtol, CERTAIN), 0.0)
+            spent += found.evaluations
+            found, method = polar, "polar quadrature"
+        if not found.converged:
+            spent += found.evaluations
+            found, method = compare(rules(), rtol, atol), "slope-space quadrature"
 
     def lost() -> float:
         return 0.0 if scan is None else missed(found, scan.mean, scan.spread)
@@ -202,7 +220,7 @@ def hemisphere(
 
             return square
 
-        refined = adaptive(panels(1.0), _bent(panels(1.0 / 3.0)), rtol, atol, budget // sides)
+        refined = adaptive(panels(1.0), bent(panels(1.0 / 3.0)), rtol, atol, budget // sides)
         evaluations = refined.evaluations * sides + found.evaluations
         if refined.converged or np.all(refined.error <= found.error):
             found, method = refined, "adaptive cubature in slope space"
@@ -245,7 +263,9 @@ def _confirmed(integrand: Integrand, wo: FloatArray, lobe: Lobe) -> Lobe:
     other = find_lobe(integrand, wo, around=(False,))
     there = _scan(lambda w: integrand(turned(w)), wo, lobe.core)
     here = _scan(integrand, wo, other.core)
-    best = other if np.max(here.spread) < np.max(there.spread) else lobe
+    least = np.abs(there.mean) - DOUBT * there.spread
+    blind = np.any(np.abs(here.mean) + DOUBT * here.spread < least)  # it looks even where nothing is seen
+    best = other if not blind and np.max(here.spread) < np.max(there.spread) else lobe
     return replace(best, evaluations=other.evaluations + 2 * SCAN)
 
 
@@ -253,79 +273,3 @@ def missed(found: Estimate, mean: Any, spread: Any) -> float:
     """Return by how much an integral and a scan differ beyond what either allows; 0 where they agree."""
     difference = np.abs(found.value - mean)
     return float(np.max(np.where(difference > DOUBT * spread + found.error, difference, 0.0)))
-
-
-def box(
-    integrand: Integrand,
-    low: npt.ArrayLike,
-    high: npt.ArrayLike,
-    *,
-    rtol: float = 1e-8,
-    atol: float = 0.0,
-    max_evaluations: int = 4_000_000,
-    kinks: bool = False,
-) -> Estimate:
-    """Integrate over the rectangle from ``low`` (2,) to ``high`` (2,).
-
-    Product Gauss-Legendre rules of rising size are compared, then SciPy's adaptive cubature is run twice
-    with different panels.
-
-    Parameters
-    ----------
-    integrand : callable
-        Takes points (N, 2), returns (N,) or (N, K).
-    kinks : bool
-        Whether kinks are known to be inside. Product rules, which then converge slowly and agree by chance,
-        are left out.
-
-    Raises
-    ------
-    ParameterError
-        When ``high`` is below ``low`` or not finite.
-    NonFiniteError
-        When the integrand is NaN or infinite somewhere.
-
-    >>> estimate = box(lambda p: p[:, 0] * p[:, 1] ** 2, (0, 0), (1, 3))
-    >>> round(float(estimate.value), 12)
-    4.5
-    """
-    start = time.perf_counter()
-    low, high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
-    span = high - low
-    if not (np.all(np.isfinite(span)) and np.all(span >= 0)):
-        raise ParameterError("high", high.tolist(), f"finite and not below low = {low.tolist()}")
-    area = float(np.prod(span))
-
-    def unit(points: FloatArray) -> Any:
-        return np.asarray(integrand(low + span * points)) * area
-
-    def rules() -> Iterator[RuleSum]:
-        for n in SIZES:
-            if n * n > max_evaluations:
-                return
-            x, w = gauss_legendre(n)
-            grid = np.stack(np.meshgrid(x, x, indexing="ij"), axis=-1).reshape(-1, 2)
-            yield apply_rule(unit, grid, np.outer(w, w).ravel())
-
-    found = None if kinks else converge(rules(), rtol, atol)
-    method = "Gauss-Legendre"
-    budget = max_evaluations - (0 if found is None else found.evaluations)
-    if found is None or (not found.converged and budget > 4 * GK21):
-        spent = max_evaluations - budget
-        found = adaptive(unit, _bent(unit), rtol, atol, budget)
-        found = replace(found, evaluations=found.evaluations + spent)
-        method = "adaptive cubature"
-    note = found.note if found.note or found.converged else "the tolerance was not reached"
-    return replace(found, seconds=time.perf_counter() - start, method=method, note=note)
-
-
-def _bent(unit: Integrand) -> Integrand:
-    """The same integral over the unit square in coordinates whose panels have other edges."""
-
-    def bent(points: FloatArray) -> Any:
-        bend = 0.35
-        moved = points + bend * points * (1 - points)
-        jacobian = np.prod(1 + bend * (1 - 2 * points), axis=1)
-        return (np.asarray(unit(moved)).T * jacobian).T
-
-    return bent

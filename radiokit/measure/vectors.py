@@ -9,7 +9,7 @@ import numpy as np
 from radiokit.measure.elementary import sincos
 from radiokit.measure.kernels import kernel, select
 
-__all__ = ["from_disk", "from_frame"]
+__all__ = ["even", "from_disk", "from_frame", "leaning"]
 
 
 @kernel
@@ -48,3 +48,31 @@ def from_frame(a: Any, b: Any, c: Any, nx: Any, ny: Any, nz: Any) -> Any:
     x = a * (1.0 + sign * nx * nx * d) + b * e + c * nx
     y = a * (sign * e) + b * (sign + ny * ny * d) + c * ny
     return x, y, c * nz - a * sign * nx - b * ny
+
+
+@kernel
+def even(x: Any, y: Any, z: Any) -> Any:
+    """Turn a cosine-distributed unit vector into one distributed evenly over the hemisphere.
+
+    The share 1 − z² of the cosine's distribution lies above z, and 1 − z' of the even one above z': z' = z².
+
+    >>> tuple(map(float, even(0.6, 0.0, 0.8)))[2] == 0.8 * 0.8
+    True
+    """
+    scale = np.sqrt(1.0 + z * z)
+    return x * scale, y * scale, z * z
+
+
+@kernel
+def leaning(x: Any, y: Any, z: Any, ox: Any, oy: Any) -> Any:
+    """Turn a cosine-distributed unit vector into one of density (2/π) max(0, w·t) above the horizon.
+
+    The lobe lies about t, the horizontal direction of (ox, oy), and its lower half is folded upwards.
+
+    >>> tuple(map(float, leaning(0.0, 0.0, 1.0, 0.0, 3.0)))
+    (0.0, 1.0, 0.0)
+    """
+    length = np.sqrt(ox * ox + oy * oy)
+    tx = select(length > 0.0, ox / select(length > 0.0, length, 1.0), 1.0)
+    ty = select(length > 0.0, oy / select(length > 0.0, length, 1.0), 0.0)
+    return z * tx - x * ty, z * ty + x * tx, abs(y)

@@ -19,6 +19,7 @@ __all__ = [
     "conductor_kernel",
     "dielectric_complement_kernel",
     "dielectric_kernel",
+    "refraction_kernel",
     "schlick_complement_kernel",
     "schlick_kernel",
     "transmitted_cosine_kernel",
@@ -106,6 +107,32 @@ def transmitted_cosine_kernel(cos_i: Any, eta: Any) -> Any:
     """
     _, n_t, _, square = _sides(cos_i, eta)
     return np.sqrt(select(square > 0.0, square, 0.0)) / n_t
+
+
+@kernel
+def refraction_kernel(ox: Any, oy: Any, oz: Any, eta: Any) -> Any:
+    """Return x, y, z of the refracted direction, along the surface if there is none, with F and 1 − F.
+
+    For a direction on either side; ``eta`` is the index below over that above, and cosθ has too few digits
+    near the critical angle of a steep direction: there the sine is taken. F is found from the rarer side,
+    where nothing cancels, and so it is the same for a direction and the one it is refracted into.
+
+    >>> [round(float(x), 6) for x in refraction_kernel(0.6, 0.0, 0.8, 1.5)]
+    [-0.4, -0.0, -0.916515, 0.043895, 0.956105]
+    """
+    near, far = select(oz < 0.0, eta, 1.0), select(oz < 0.0, 1.0, eta)
+    z = select(abs(oz) < 1.0, abs(oz), 1.0)
+    sine = np.sqrt(ox * ox + oy * oy)
+    by_sine = (far - near * sine) * (far + near * sine)
+    by_cosine = (far - near) * (far + near) + (near * z) * (near * z)
+    square = select((far < near) & (z * z > 0.5), by_sine, by_cosine)
+    total = square < 0.0
+    behind = np.sqrt(select(total, 0.0, square)) / far
+    scale = select(total, 1.0 / select(sine > 0.0, sine, 1.0), near / far)
+    rare = select(far < near, behind, z)
+    rare = select(eta < 1.0, -rare, rare)
+    tz = select(oz < 0.0, behind, -behind)
+    return -scale * ox, -scale * oy, tz, dielectric_kernel(rare, eta), dielectric_complement_kernel(rare, eta)
 
 
 @kernel
