@@ -303,7 +303,7 @@ def test_a_narrow_lobe_over_a_wide_one_is_not_missed():
             return 1.0
 
     with pytest.raises(NoTruthError):  # a width that is wrong is noticed
-        twin_albedo(Wide(alpha=1e-3), wo)
+        twin_albedo(Wide(alpha=1e-3), wo, most=3000)
 
 
 # The command

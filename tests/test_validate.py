@@ -13,10 +13,13 @@ import pytest
 import radiokit as rk
 from radiokit.bsdfs.lambert import Lambert
 from radiokit.checks.claims import claims
-from radiokit.contracts.bsdf import Claims
+from radiokit.checks.sampling import P_VALUES
+from radiokit.contracts.bsdf import REGISTRY, Claims
+from radiokit.contracts.parameters import parameters_of
 from radiokit.faces.plots.work_precision import draw_work_precision, work_precision
-from radiokit.faces.validate import MUST_HOLD, validate
+from radiokit.faces.validate import LEVEL, MUST_HOLD, validate
 from radiokit.facts.verdict import Outcome
+from radiokit.measure.statistics import sidak
 
 
 @pytest.fixture(scope="module")
@@ -127,3 +130,37 @@ def test_the_work_precision_diagram_shows_the_right_slopes(tmp_path, seed):
         assert -0.7 < slope < -0.3
     path = draw_work_precision(tmp_path / "new" / "picture.png")
     assert path.stat().st_size > 10_000
+
+
+def test_one_level_is_shared_by_the_whole_run(found):
+    """Over all samplers and all cases together; the numbers are in the JSON."""
+    data = json.loads(json.dumps(found.to_json(), allow_nan=False))
+    count = len(data["models"]) + len(data["cases"])
+    total = 0.0
+    for report in data["models"]:
+        (verdict,) = [v for v in report["verdicts"] if v["check"] == "sampling"]
+        details = verdict["details"]
+        assert details["angles_deg"] == [0.0, 30.0, 60.0, 80.0, 85.0, 89.5]
+        assert details["verdicts"] == count
+        assert details["level_of_all"] == data["level"] == LEVEL
+        rows = details["rows"]
+        assert [row["theta_deg"] for row in rows] == details["angles_deg"] * (len(rows) // 6)
+        p_values = [row[name] for row in rows for name in P_VALUES if name in row]
+        assert p_values
+        assert all("p_chi_square" in row or "p_delta" in row for row in rows)
+        assert min(p_values) == verdict["p_value"] > details["level"]
+        assert details["level"] == sidak(LEVEL, count * len(P_VALUES) * len(rows))
+        total += details["level"] * len(p_values)
+    total += len(data["cases"]) * sidak(LEVEL, count)
+    assert total <= LEVEL * (1 + 1e-9)
+
+
+def test_narrow_lobes_are_among_the_examples(found):
+    """Every model with a width α is sampled at 1e-3, or at the least that it allows."""
+    for name, cls in REGISTRY.classes.items():
+        widths = [n for n in parameters_of(cls) if n in ("alpha", "alpha_x")]
+        for width in widths[:1]:
+            judged = [r.parameters[width] for r in found.models if r.subject == name]
+            given = [value for value in judged if value is not None]
+            least = float(parameters_of(cls)[width].interval[1:].split(",")[0])
+            assert min(given) <= max(1e-3, least), f"{name}: add an example with {width} = 1e-3"

@@ -24,6 +24,9 @@ ANGLES_DEG = (0.0, 30.0, 60.0, 80.0, 85.0, 89.5)
 LEVEL = 1e-6
 """Chance of rejecting a right sampler, over all tests of one verdict (and of a suite, see ``tests``)."""
 
+P_VALUES = ("p_chi_square", "p_albedo", "p_delta")
+"""The tests at each direction; all three share the level, though few models have delta lobes."""
+
 CELLS = (12, 12)  # along radius and azimuth, on each side of the plane of incidence
 NODES = 8, 32  # Gauss-Legendre nodes along each side of a cell, and of one that a narrow ridge may cross
 MOST = 400_000  # evaluations that one integral may cost
@@ -55,8 +58,9 @@ def sampling(f: BSDF, *, samples: int = 1 << 17, seed: int = 0, tests: int = 1) 
     places = [
         (theta, below) for below in ((False, True) if f.transmissive else (False,)) for theta in ANGLES_DEG
     ]
-    level = sidak(LEVEL, tests * 2 * len(places))
-    details: dict[str, Any] = {"samples": samples, "angles_deg": list(ANGLES_DEG), "level": level}
+    level = sidak(LEVEL, tests * len(P_VALUES) * len(places))
+    details: dict[str, Any] = {"samples": samples, "angles_deg": list(ANGLES_DEG)}
+    details |= {"level": level, "level_of_all": LEVEL, "verdicts": tests}
     problem: tuple[str, Witness] | None = None
     rows = []
     for k, (theta, below) in enumerate(places):
@@ -71,7 +75,7 @@ def sampling(f: BSDF, *, samples: int = 1 << 17, seed: int = 0, tests: int = 1) 
             evaluations += int(row.pop("evaluations", 0))
             side = {"side": "below" if below else "above"} if f.transmissive else {}
             rows.append({"theta_deg": theta, **side, **row})
-            p_least = min(p_least, *(row.get(name, 1.0) for name in ("p_chi_square", "p_albedo", "p_delta")))
+            p_least = min(p_least, *(row.get(name, 1.0) for name in P_VALUES))
         if problem is not None:
             problem = (f"{problem[0]}, at θo = {theta:g}°{' below' if below else ''}", problem[1])
             break

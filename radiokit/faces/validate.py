@@ -137,8 +137,9 @@ def validate(
     start = time.perf_counter()
     models = [(name, dict(values)) for name, cls in REGISTRY.classes.items() for values in cls.EXAMPLES]
     rows = [(name, method) for name in list_cases() for method in case(name).methods]
-    tasks: list[tuple[Any, ...]] = [("model", name, values, len(models)) for name, values in models]
-    tasks += [("case", name, method, len(rows), seed + i) for i, (name, method) in enumerate(rows)]
+    count = len(models) + len(rows)  # all share the level, whether or not they are statistical
+    tasks: list[tuple[Any, ...]] = [("model", name, values, count) for name, values in models]
+    tasks += [("case", name, method, count, seed + i) for i, (name, method) in enumerate(rows)]
     found = list(_run(executor or SerialExecutor(), tasks, progress))
     return Validation(
         models=tuple(item for item in found if isinstance(item, Report)),
