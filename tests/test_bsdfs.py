@@ -180,6 +180,20 @@ ROWS = (
             ),
         ),
     ),
+    Row(
+        "cook_torrance",
+        ordinary=({}, {"alpha": 0.4, "f0": 0.04}, {"alpha": 0.1, "eta": 0.2, "k": 3.9}),
+        hard=(
+            {"alpha": 1e-3},
+            {"alpha": 1e-4, "eta": 0.2, "k": 3.9},
+            # On both sides of where F outweighs the paper's factor.
+            {"alpha": 1.0, "f0": 0.03},
+            {"alpha": 1.0, "f0": 0.04},
+            {"alpha": 0.9, "f0": 0.0},
+            {"alpha": 1.0, "eta": 1.45, "k": 0.0},
+        ),
+        wrong=(out_of_range("alpha", 0, "[1e-4, 1]"), *WRONG_INDEX),
+    ),
 )
 
 
@@ -573,3 +587,33 @@ def test_ggx_is_the_same_both_ways_to_the_last_bit(rng):
     f = GGX(alpha=0.2, eta=0.2, k=3.9)
     wi, wo = hard_pairs(f, rng)
     np.testing.assert_array_equal(f.evaluate(wi, wo), f.evaluate(wo, wi))
+
+
+def test_cook_and_torrance_is_four_times_beckmann_in_grooves(rng):
+    for given in ({"f0": 0.04}, {"eta": 0.2, "k": 3.9}):
+        f, g = bsdf("cook_torrance", **given), bsdf("beckmann", masking="v-groove", **given)
+        wi, wo = hard_pairs(f, rng)
+        np.testing.assert_array_equal(f.evaluate(wi, wo), 4.0 * g.evaluate(wi, wo))
+        np.testing.assert_array_equal(f.pdf(wi, wo), g.pdf(wi, wo))
+
+
+@pytest.mark.parametrize("given", [{}, {"alpha": 0.8, "f0": 0.02}, {"eta": 0.2, "k": 3.9}], ids=repr)
+def test_what_cook_and_torrance_reflect_at_grazing_incidence_is_the_limit(given):
+    f = bsdf("cook_torrance", **given)
+    wo = spherical_to_cartesian(np.radians(90 - 1e-4), 0.3)
+    found = float(directional_albedo(f, wo, rtol=1e-5).value)
+    assert found == pytest.approx(f.grazing_albedo(), rel=2e-5)
+    spectral = dataclasses.replace(f, **{name: (given[name],) * 2 for name in given if name != "alpha"})
+    np.testing.assert_allclose(spectral.grazing_albedo(), f.grazing_albedo(), rtol=1e-14)
+
+
+@pytest.mark.parametrize("name", ["ggx", "beckmann"])
+def test_equal_widths_are_one_width(name, rng):
+    one, two = bsdf(name, alpha=0.2), bsdf(name, alpha_x=0.2, alpha_y=0.2)
+    assert one.isotropic
+    assert two.isotropic
+    assert not bsdf(name, alpha_x=0.2, alpha_y=0.3).isotropic
+    wi, wo = hard_pairs(one, rng)
+    np.testing.assert_array_equal(one.evaluate(wi, wo), two.evaluate(wi, wo))
+    almost = bsdf(name, alpha_x=0.2, alpha_y=np.nextafter(0.2, 1))
+    np.testing.assert_allclose(almost.evaluate(wi, wo), one.evaluate(wi, wo), rtol=1e-13)

@@ -2,8 +2,8 @@
 
 For surfaces whose height is a Gaussian process: polished and ground metals, water under wind. The highlight
 ends sooner than that of GGX. Shadowing and masking are Smith's, which suits such a surface, or those of
-Torrance and Sparrow's V-grooves. Single scattering only, so a rough surface loses energy. Without an index its
-facets reflect everything.
+Torrance and Sparrow's V-grooves. Single scattering only, so a rough surface loses energy. Without an index
+its facets reflect everything.
 """
 
 from __future__ import annotations
@@ -17,10 +17,7 @@ from radiokit.contracts.parameters import choice
 from radiokit.contracts.scalar import Kernels
 from radiokit.facts.source import Source
 from radiokit.measure.twin import Twin
-from radiokit.physics.microfacet import beckmann_d_symbolic, beckmann_lambda_symbolic
-from radiokit.physics.ndf import beckmann_area, beckmann_density, beckmann_normal
-from radiokit.physics.reflection import MASKINGS, Law
-from radiokit.physics.visible import beckmann_visible
+from radiokit.physics.reflection import BECKMANN, MASKINGS, Law
 
 __all__ = ["Beckmann"]
 
@@ -33,15 +30,6 @@ SOURCE = Source(
     "(2014), Understanding the Masking-Shadowing Function, Journal of Computer Graphics Techniques 3(2), "
     "section 5.3 and equations 80, 86, 98, 99; the V-groove's G from Cook & Torrance (1982). Walter's "
     "equation 27 is a rational fit of G₁, of relative error 0.35 %: here G₁ is exact",
-)
-
-LAW = Law(
-    beckmann_density,
-    beckmann_area,
-    beckmann_visible,
-    beckmann_normal,
-    beckmann_d_symbolic,
-    beckmann_lambda_symbolic,
 )
 
 
@@ -87,7 +75,7 @@ class Beckmann(RoughMirror):
         {"alpha": 0.6, "masking": "v-groove"},
         {"alpha": 0.6, "masking": "separable", "f0": 0.04},
     )
-    LAW: ClassVar[Law] = LAW
+    LAW: ClassVar[Law] = BECKMANN
 
     masking: str = choice(*MASKINGS, meaning="how facets hide one another")
 

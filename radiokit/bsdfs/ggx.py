@@ -16,10 +16,9 @@ from radiokit.contracts.scalar import Kernels
 from radiokit.facts.source import Source
 from radiokit.measure.kernels import kernel
 from radiokit.measure.twin import Twin
-from radiokit.physics.microfacet import ggx_d_symbolic, ggx_lambda_symbolic
-from radiokit.physics.ndf import ggx_area, ggx_area_isotropic, ggx_density, ggx_normal
+from radiokit.physics import reflection
+from radiokit.physics.ndf import ggx_area_isotropic
 from radiokit.physics.reflection import Law
-from radiokit.physics.visible import ggx_visible
 
 __all__ = ["GGX"]
 
@@ -39,8 +38,7 @@ def _round_area(wx: Any, wy: Any, wz: Any, alpha_x: Any, alpha_y: Any) -> Any:
     return ggx_area_isotropic(wz, alpha_x)
 
 
-LAW = Law(ggx_density, ggx_area, ggx_visible, ggx_normal, ggx_d_symbolic, ggx_lambda_symbolic)
-ROUND = replace(LAW, area=_round_area)
+ROUND = replace(reflection.GGX, area=_round_area)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,12 +83,12 @@ class GGX(RoughMirror):
         {"alpha_x": 0.5, "alpha_y": 0.1},
         {"alpha": 0.6, "masking": "separable", "f0": 0.04},
     )
-    LAW: ClassVar[Law] = LAW
+    LAW: ClassVar[Law] = reflection.GGX
 
     @property
     def law(self) -> Law:
         """The law of the slopes; with equal widths, one that is less work."""
-        return ROUND if self.isotropic else LAW
+        return ROUND if self.isotropic else self.LAW
 
     def symbolic(self) -> Twin:
         """Return the symbolic twin, in the angles and tangents of the sources."""

@@ -11,7 +11,6 @@ from radiokit.contracts.bsdf import FloatArray
 from radiokit.contracts.parameters import Spectrum, choice, parameter
 from radiokit.contracts.scalar import Kernels, ScalarBSDF
 from radiokit.facts.errors import ParameterError
-from radiokit.measure.kernels import Kernel
 from radiokit.measure.twin import Twin
 from radiokit.physics import fresnel
 from radiokit.physics.microfacet import (
@@ -114,7 +113,7 @@ class FacetBSDF(ScalarBSDF):
 
     @property
     def smooth(self) -> bool:
-        """Whether f is: a V-groove's masking has kinks, and so has F where facets begin to reflect totally."""
+        """Whether f is: a V-groove's masking has kinks, and so has F where total reflection begins."""
         if self.hiding == "v-groove":
             return False
         if self.eta is None or self.k is None:
@@ -144,34 +143,52 @@ class FacetBSDF(ScalarBSDF):
         found, constants = self.reflection()
         return Kernels(found.value, found.density, found.sample, constants)
 
+    def reflectance(self, cosine: Any) -> Any:
+        """Return F [1] for the cosine (...) of the angle at a facet; (K, ...) for K wavelengths."""
+        index: tuple[Any, ...] = ()
+        if self.eta is not None and self.k is not None:
+            index = fresnel.clip_index(self.eta, self.k)
+        elif self.f0 is not None:
+            index = (self.f0,)
+        else:
+            return np.ones_like(cosine)
+        form = fresnel.schlick_kernel if len(index) == 1 else fresnel.conductor_kernel
+        shape = (-1, *(1,) * np.ndim(cosine))
+        with np.errstate(all="ignore"):
+            return form(cosine, *(np.reshape(i, shape) if np.ndim(i) else i for i in index))
+
+    def reflectance_symbolic(self, cosine: Any) -> tuple[Any, dict[Any, Any]]:
+        """Return F as SymPy for the cosine of the angle at a facet, and its parameters' values."""
+        import sympy
+
+        if self.eta is not None and self.k is not None:
+            eta, k = sympy.symbols("eta k", positive=True)
+            return fresnel.conductor_symbolic(cosine, eta, k), {eta: self.eta, k: self.k}
+        if self.f0 is not None:
+            f0 = sympy.Symbol("F_0", nonnegative=True)
+            return fresnel.schlick_symbolic(cosine, f0), {f0: self.f0}
+        return sympy.S.One, {}
+
     def reflection_twin(self) -> Twin:
-        """Return F D G₂ / (4 cosθi cosθo) from the papers' formulas; one symbol α where there is one width."""
+        """Return F D G₂ / (4 cosθi cosθo) from the papers' formulas; with one symbol α for one width."""
         import sympy
 
         from radiokit.measure.twin import DIRECTION_SYMBOLS
 
         alpha, alpha_x, alpha_y = sympy.symbols("alpha alpha_x alpha_y", positive=True)
-        eta, k = sympy.symbols("eta k", positive=True)
-        f0 = sympy.Symbol("F_0", nonnegative=True)
         x, y = self.widths
         widths = (alpha, alpha) if x == y else (alpha_x, alpha_y)
-        values: dict[Any, Any] = dict(zip(widths, (x, y), strict=True))
         wi, wo = DIRECTION_SYMBOLS[:3], DIRECTION_SYMBOLS[3:]
         half = [i + o for i, o in zip(wi, wo, strict=True)]
         cosine = dot_symbolic(wi, half) / sympy.sqrt(dot_symbolic(half, half))
-        share = sympy.S.One
-        if self.eta is not None and self.k is not None:
-            share = fresnel.conductor_symbolic(cosine, eta, k)
-            values |= {eta: self.eta, k: self.k}
-        elif self.f0 is not None:
-            share = fresnel.schlick_symbolic(cosine, f0)
-            values |= {f0: self.f0}
+        share, values = self.reflectance_symbolic(cosine)
         if self.hiding == "v-groove":
             hidden = groove_symbolic(half, wi, wo)
         else:
             form = separable_symbolic if self.hiding == "separable" else correlated_symbolic
             hidden = form(*(self.law.lambda_symbolic(w, *widths) for w in (wi, wo)))
-        return Twin(share * self.law.d_symbolic(half, *widths) * hidden / (4 * wi[2] * wo[2]), values)
+        expression = share * self.law.d_symbolic(half, *widths) * hidden / (4 * wi[2] * wo[2])
+        return Twin(expression, dict(zip(widths, (x, y), strict=True)) | values)
 
 
 @dataclass(frozen=True, kw_only=True)

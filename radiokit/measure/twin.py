@@ -159,8 +159,8 @@ class Twin:
     def _real(self, *numbers: mpmath.mpf) -> mpmath.mpf:
         """Evaluate at mpmath's present precision and drop the imaginary part, which must be 0.
 
-        Where the formula divides by 0, the limit is meant: arguments that are 0 are moved by the precision,
-        so that only a limit gives the same value at two of them.
+        Where the formula divides by 0, the limit is meant: arguments that are 0 are moved, less at a higher
+        precision, so that only a limit gives the same value at two of them.
         """
         import mpmath
 
@@ -168,7 +168,8 @@ class Twin:
         try:
             value = mpmath.mpmathify(function(*numbers))
         except ZeroDivisionError:
-            beside = mpmath.mpf(10) ** -mpmath.mp.dps
+            places = min(mpmath.mp.dps, 100 + mpmath.mp.dps // 10)  # more, and exp(−1/x²) takes seconds
+            beside = mpmath.mpf(10) ** -places
             value = mpmath.mpmathify(function(*(number or beside for number in numbers)))
         if isinstance(value, mpmath.mpc):
             if abs(value.imag) > mpmath.sqrt(mpmath.eps) * abs(value.real):

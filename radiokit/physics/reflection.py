@@ -26,12 +26,32 @@ from radiokit.physics.masking import (
     separable_over_cosines,
     separable_ratio,
 )
-from radiokit.physics.visible import groove_reflected_density, groove_visible, reflected_density
+from radiokit.physics.microfacet import (
+    beckmann_d_symbolic,
+    beckmann_lambda_symbolic,
+    ggx_d_symbolic,
+    ggx_lambda_symbolic,
+)
+from radiokit.physics.ndf import (
+    beckmann_area,
+    beckmann_density,
+    beckmann_normal,
+    ggx_area,
+    ggx_density,
+    ggx_normal,
+)
+from radiokit.physics.visible import (
+    beckmann_visible,
+    ggx_visible,
+    groove_reflected_density,
+    groove_visible,
+    reflected_density,
+)
 
-__all__ = ["MASKINGS", "Law", "Reflection", "reflecting", "shares", "tinted"]
+__all__ = ["BECKMANN", "GGX", "MASKINGS", "Law", "Reflection", "reflecting", "shares", "tinted"]
 
 MASKINGS = ("height-correlated", "separable", "v-groove")
-"""How facets hide one another: Smith's masking with G₂ = 1/(1 + Λi + Λo) or G₁(i) G₁(o), and the V-groove's."""
+"""How facets hide one another: Smith's G₂ = 1/(1 + Λi + Λo) or G₁(i) G₁(o), and the V-groove's."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +80,17 @@ class Law:
     lambda_symbolic: Callable[..., Any]
 
 
+BECKMANN = Law(
+    beckmann_density,
+    beckmann_area,
+    beckmann_visible,
+    beckmann_normal,
+    beckmann_d_symbolic,
+    beckmann_lambda_symbolic,
+)
+GGX = Law(ggx_density, ggx_area, ggx_visible, ggx_normal, ggx_d_symbolic, ggx_lambda_symbolic)
+
+
 @dataclass(frozen=True)
 class Reflection:
     """A rough mirror's kernels, as ``contracts.scalar.Kernels`` describes them."""
@@ -69,7 +100,7 @@ class Reflection:
     sample: Kernel
 
 
-# These names stand for kernels below; ``bind`` puts those of a law, a masking or a reflectance in their place.
+# These names stand for kernels below; ``bind`` puts those of a law, a masking or a reflectance there.
 _normals: Any = None
 _area: Any = None
 _draw: Any = None
@@ -208,8 +239,7 @@ def shares(
 ) -> tuple[Any, Any]:
     """Return G₁(wo, ĥ) and G₂(wi, wo, ĥ) [1] for directions given as three arrays each, w·h above 0.
 
-    >>> from radiokit.bsdfs.ggx import LAW
-    >>> [float(g) for g in shares(LAW, "separable", (0.0, 0.0, 1.0), (0.6, 0.0, 0.8), (0, 0, 1), 1.0, 1.0)]
+    >>> [float(g) for g in shares(GGX, "separable", (0.0, 0.0, 1.0), (0.6, 0.0, 0.8), (0, 0, 1), 1.0, 1.0)]
     [0.888888888888889, 0.888888888888889]
     """
     if hiding == "v-groove":
