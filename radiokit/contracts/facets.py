@@ -15,11 +15,19 @@ from radiokit.measure.twin import Twin
 from radiokit.physics import fresnel
 from radiokit.physics.microfacet import (
     correlated_symbolic,
-    dot_symbolic,
+    cosine_symbolic,
     groove_symbolic,
     separable_symbolic,
 )
-from radiokit.physics.reflection import Law, Reflection, reflecting, shares, tinted
+from radiokit.physics.reflection import (
+    Law,
+    Reflection,
+    metal_share,
+    reflecting,
+    schlick_share,
+    shares,
+    tinted,
+)
 
 __all__ = ["FacetBSDF", "Facets", "RoughMirror"]
 
@@ -132,10 +140,10 @@ class FacetBSDF(ScalarBSDF):
         """Return the kernels of F D G₂ / (4 cosθi cosθo), and their constants."""
         if self.eta is not None and self.k is not None:
             index = fresnel.clip_index(self.eta, self.k)
-            return tinted(self.law, self.hiding, fresnel.conductor_kernel), (*self.widths, *index)
+            return tinted(self.law, self.hiding, metal_share), (*self.widths, *index)
         if self.f0 is not None:
             f0 = np.asarray(self.f0)[()]
-            return tinted(self.law, self.hiding, fresnel.schlick_kernel), (*self.widths, f0)
+            return tinted(self.law, self.hiding, schlick_share), (*self.widths, f0)
         return reflecting(self.law, self.hiding), self.widths
 
     def reflection_kernels(self) -> Kernels:
@@ -180,8 +188,7 @@ class FacetBSDF(ScalarBSDF):
         widths = (alpha, alpha) if x == y else (alpha_x, alpha_y)
         wi, wo = DIRECTION_SYMBOLS[:3], DIRECTION_SYMBOLS[3:]
         half = [i + o for i, o in zip(wi, wo, strict=True)]
-        cosine = dot_symbolic(wi, half) / sympy.sqrt(dot_symbolic(half, half))
-        share, values = self.reflectance_symbolic(cosine)
+        share, values = self.reflectance_symbolic(cosine_symbolic(wi, half))
         if self.hiding == "v-groove":
             hidden = groove_symbolic(half, wi, wo)
         else:

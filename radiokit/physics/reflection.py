@@ -15,6 +15,7 @@ import numpy as np
 
 from radiokit.measure.kernels import Kernel, bind, kernel, select
 from radiokit.physics.facet import reflect
+from radiokit.physics.interface import conductor_kernel
 from radiokit.physics.masking import (
     HORIZON,
     correlated_over_cosines,
@@ -48,7 +49,18 @@ from radiokit.physics.visible import (
     reflected_density,
 )
 
-__all__ = ["BECKMANN", "GGX", "MASKINGS", "Law", "Reflection", "reflecting", "shares", "tinted"]
+__all__ = [
+    "BECKMANN",
+    "GGX",
+    "MASKINGS",
+    "Law",
+    "Reflection",
+    "metal_share",
+    "reflecting",
+    "schlick_share",
+    "shares",
+    "tinted",
+]
 
 MASKINGS = ("height-correlated", "separable", "v-groove")
 """How facets hide one another: Smith's G₂ = 1/(1 + Λi + Λo) or G₁(i) G₁(o), and the V-groove's."""
@@ -192,10 +204,33 @@ def _facet_cosine(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any) -> Any:
     return select(cosine < 1.0, cosine, 1.0)
 
 
+@kernel
+def metal_share(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, eta: Any, k: Any) -> Any:
+    """Return F [1] of the metal facet that reflects i to o.
+
+    >>> round(float(metal_share(0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.2, 3.0)), 12)
+    0.92337164751
+    """
+    return conductor_kernel(_facet_cosine(ix, iy, iz, ox, oy, oz), eta, k)
+
+
+@kernel
+def schlick_share(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, f0: Any) -> Any:
+    """Return Schlick's F [1] at the facet that reflects i to o: 1 − cosθ is sin²θ/(1 + cosθ), from i − o.
+
+    >>> float(schlick_share(-1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.04))
+    1.0
+    """
+    x, y, z = ix - ox, iy - oy, iz - oz
+    d = 0.25 * (x * x + y * y + z * z) / (1.0 + _facet_cosine(ix, iy, iz, ox, oy, oz))
+    d = select(d < 1.0, d, 1.0)
+    return f0 + (1.0 - f0) * (d * d * (d * d) * d)
+
+
 def _tinted_value(
     ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, alpha_x: Any, alpha_y: Any, *index: Any
 ) -> Any:
-    share = _reflectance(_facet_cosine(ix, iy, iz, ox, oy, oz), *index)
+    share = _reflectance(ix, iy, iz, ox, oy, oz, *index)
     return share * _value(ix, iy, iz, ox, oy, oz, alpha_x, alpha_y)
 
 
@@ -209,21 +244,21 @@ def _tinted_sample(
     u0: Any, u1: Any, ox: Any, oy: Any, oz: Any, alpha_x: Any, alpha_y: Any, *index: Any
 ) -> Any:
     wx, wy, wz, share = _sample(u0, u1, ox, oy, oz, alpha_x, alpha_y)
-    return wx, wy, wz, _reflectance(_facet_cosine(wx, wy, wz, ox, oy, oz), *index) * share
+    return wx, wy, wz, _reflectance(wx, wy, wz, ox, oy, oz, *index) * share
 
 
 def _tinted_groove_sample(
     u0: Any, u1: Any, u2: Any, ox: Any, oy: Any, oz: Any, alpha_x: Any, alpha_y: Any, *index: Any
 ) -> Any:
     wx, wy, wz, share = _sample(u0, u1, u2, ox, oy, oz, alpha_x, alpha_y)
-    return wx, wy, wz, _reflectance(_facet_cosine(wx, wy, wz, ox, oy, oz), *index) * share
+    return wx, wy, wz, _reflectance(wx, wy, wz, ox, oy, oz, *index) * share
 
 
 @lru_cache(maxsize=64)
 def tinted(law: Law, hiding: str, reflectance: Kernel) -> Reflection:
     """Return the kernels for facets that reflect F, with the constants ``alpha_x, alpha_y, *index``.
 
-    ``reflectance(cosine, *index)`` is F [1] at the angle between a direction and the facet's normal.
+    ``reflectance(ix, iy, iz, ox, oy, oz, *index)`` is F [1], as ``metal_share`` is.
     """
     white = reflecting(law, hiding)
     sample = _tinted_groove_sample if hiding == "v-groove" else _tinted_sample
