@@ -25,6 +25,7 @@ LEVEL = 1e-6
 
 CELLS = (12, 12)  # along radius and azimuth, on each side of the plane of incidence
 NODES = 8  # Gauss-Legendre nodes along each side of a cell
+TURNED_NODES = 24  # along its azimuth for lobes that are not isotropic: one may be long and narrow
 MOST = 400_000  # evaluations that one integral may cost
 WEIGHT = 1e-6  # relative disagreement of a weight that is let pass
 
@@ -166,7 +167,7 @@ def _distribution(
         except NonFiniteError as problem_found:
             return {}, ("the pdf is not finite", Witness(at, {"pdf": str(problem_found)}))
         total, error = total + float(found.value), error + float(found.error)
-        cells, spent = _cell_shares(density, aim, width)
+        cells, spent = _cell_shares(density, aim, width, NODES if f.isotropic else TURNED_NODES)
         row["evaluations"] += found.evaluations + spent
         here = place[(place[:, 2] > 0) & ~special]
         expected.append(cells)
@@ -253,22 +254,22 @@ def _with_rest(expected: FloatArray, observed: Any, samples: int) -> tuple[Float
     return np.maximum(np.append(expected, lost), 0.0), np.append(observed, rest)
 
 
-def _cell_shares(density: Any, wo: FloatArray, width: float) -> tuple[FloatArray, int]:
-    """Integrate the pdf over every cell of the slope-space square, on both sides."""
-    x, wx = _panels(CELLS[0])
-    s, ws = _panels(CELLS[1])
+def _cell_shares(density: Any, wo: FloatArray, width: float, nodes: int) -> tuple[FloatArray, int]:
+    """Integrate the pdf over every cell of the slope-space square, on both sides; ``nodes`` in azimuth."""
+    x, wx = _panels(CELLS[0], NODES)
+    s, ws = _panels(CELLS[1], nodes)
     grid_x, grid_s = np.meshgrid(x, s, indexing="ij")
     wi, weight, _ = slope_map(wo, width, grid_x.ravel(), grid_s.ravel())
     weight = weight * np.outer(wx, ws).ravel() / 2
     sides = []
     for points in (wi, mirrored(wi, wo)):
-        mass = (density(points) * weight).reshape(CELLS[0], NODES, CELLS[1], NODES)
+        mass = (density(points) * weight).reshape(CELLS[0], NODES, CELLS[1], nodes)
         sides.append(mass.sum(axis=(1, 3)).ravel())
     return np.concatenate(sides), 2 * len(wi)
 
 
-def _panels(count: int) -> tuple[FloatArray, FloatArray]:
-    x, w = gauss_legendre(NODES)
+def _panels(count: int, nodes: int) -> tuple[FloatArray, FloatArray]:
+    x, w = gauss_legendre(nodes)
     return ((np.arange(count)[:, None] + x) / count).ravel(), np.tile(w / count, count)
 
 
