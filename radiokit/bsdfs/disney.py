@@ -299,11 +299,12 @@ def _conserves(model: Disney) -> bool:
         chosen = tuple(unit[first:last].T)
         return lambda wi, wo: run(_value, (*wi.T, *wo.T), (*chosen, *shape))
 
-    parts = ((0, 3, 1.0, True), (3, 5, min(*model._widths(), 1.0), model.isotropic), (5, 6, shape[4], True))
+    narrow, wide = sorted(model._widths())
+    parts = ((0, 3, 1.0, 1.0), (3, 5, min(narrow, 1.0), wide / narrow), (5, 6, shape[4], 1.0))
     return lobes_conserve(
         [
-            WeightedLobe(evaluate(first, last), width, coefficients[first:last], isotropic)
-            for first, last, width, isotropic in parts
+            WeightedLobe(evaluate(first, last), width, coefficients[first:last], stretch)
+            for first, last, width, stretch in parts
             if np.any(coefficients[first:last])
         ]
     )

@@ -23,12 +23,15 @@ LAST_DEG = 89.99
 """The last polar angle that is looked at, as by the judges [degrees]."""
 
 SCAN_DEG = (*np.linspace(0.0, 84.0, 29), *(90.0 - np.geomspace(5.5, 90.0 - LAST_DEG, 16)))
-AZIMUTHS_DEG = tuple(np.linspace(0.0, 90.0, 7))
+AZIMUTHS_DEG = (0.0, 30.0, 60.0, 90.0)
 SIZES = (32, 48, 72, 104, 152)
 """Nodes along each axis of the scan's rule and of those that follow it near the limit."""
 
-CLEAR, CLIMBS = 0.01, 4
-"""How far from the limit the scan decides alone, and from how many angles a climb starts otherwise."""
+PER_STRETCH = 0.4
+"""Times as many nodes in azimuth, for each unit of a lobe's length over its width."""
+
+CLEAR = 0.01
+"""How far from the limit the scan decides alone; it errs by less than 0.002."""
 
 
 @dataclass(frozen=True)
@@ -42,15 +45,15 @@ class WeightedLobe:
     width : float
         In the slope space of half vectors, above 0.
     weights : ndarray, shape (J, K)
-    isotropic : bool
-        Whether the functions are unchanged by a turn about the normal. If not, they are by a change of sign
-        of both directions' x, or y.
+    stretch : float
+        The lobe's length over its width: 1 if it is unchanged by a turn about the normal. If it is not, the
+        length must be along x or y, so that nothing changes with the sign of both directions' x, or y.
     """
 
     evaluate: Callable[[FloatArray, FloatArray], FloatArray]
     width: float
     weights: FloatArray
-    isotropic: bool = True
+    stretch: float = 1.0
 
 
 def lobes_albedo(lobes: Sequence[WeightedLobe], theta_deg: float, phi_deg: float, n: int) -> FloatArray:
@@ -63,20 +66,21 @@ def lobes_albedo(lobes: Sequence[WeightedLobe], theta_deg: float, phi_deg: float
     [0.5, 1.0]
     """
     wo = spherical_to_cartesian(np.deg2rad(theta_deg), np.deg2rad(phi_deg))
-    total = 0.0
+    total = np.zeros(lobes[0].weights.shape[1]) if lobes else np.zeros(1)
     for lobe in lobes:
-        wi, weight = slope_rule(wo, lobe.width, n, symmetric=lobe.isotropic)
+        azimuths = round(n * max(1.0, PER_STRETCH * lobe.stretch))
+        wi, weight = slope_rule(wo, lobe.width, (n, azimuths), symmetric=lobe.stretch == 1)
         found = lobe.evaluate(wi, np.broadcast_to(wo, wi.shape))
         total = total + (weight * wi[:, 2]) @ found @ lobe.weights
-    return np.asarray(total)
+    return total
 
 
 def lobes_conserve(lobes: Sequence[WeightedLobe]) -> bool:
     """Return whether the largest directional albedo of a sum of lobes is at most 1, to ``TOLERANCE``.
 
-    Polar angles up to 89.99° are scanned, for seven azimuths where a lobe is not isotropic. Only within 0.01
-    of the limit is the scan not enough: then the highest few angles are climbed from, and integrated by ever
-    larger rules until the limit is farther than ten times what the last step changed.
+    Polar angles up to 89.99° are scanned, for four azimuths where a lobe is not isotropic. Only within 0.01
+    of the limit is the scan not enough: then each peak is climbed, and integrated by ever larger rules until
+    the limit is farther away than ten times what the last step changed.
 
     >>> from radiokit.contracts.bsdf import bsdf
     >>> paint = bsdf("lambert", reflectance=1.0)
@@ -86,25 +90,24 @@ def lobes_conserve(lobes: Sequence[WeightedLobe]) -> bool:
     True
     False
     """
-    azimuths = (0.0,) if all(lobe.isotropic for lobe in lobes) else AZIMUTHS_DEG
-    places = [(theta, phi) for theta in SCAN_DEG for phi in (azimuths if theta else azimuths[:1])]
-    turned, fixed = ([lobe for lobe in lobes if lobe.isotropic is flag] for flag in (False, True))
-    still = {theta: lobes_albedo(fixed, theta, 0.0, SIZES[0]) for theta in SCAN_DEG}
-    scan = np.array(
-        [np.max(still[theta] + lobes_albedo(turned, theta, phi, SIZES[0])) for theta, phi in places]
-    )
+    fixed, turned = ([lobe for lobe in lobes if (lobe.stretch == 1) is flag] for flag in (True, False))
+    azimuths = AZIMUTHS_DEG if turned else AZIMUTHS_DEG[:1]
+    scan = np.full((len(SCAN_DEG) + 2, len(azimuths)), -np.inf)
+    for row, theta in enumerate(SCAN_DEG, start=1):
+        still = lobes_albedo(fixed, theta, 0.0, SIZES[0])
+        scan[row] = [np.max(still + lobes_albedo(turned, theta, phi, SIZES[0])) for phi in azimuths]
     if abs(scan.max() - 1) > CLEAR:
         return bool(scan.max() < 1)
-    order = np.argsort(-scan, kind="stable")[:CLIMBS]
-    return not any(_exceeds(lobes, *_climbed(lobes, *places[index])) for index in order)
+    here = scan[1:-1]
+    peaks = (here >= scan[:-2]) & (here >= scan[2:]) & (here > 1 - CLEAR)
+    return not any(_exceeds(lobes, *_climbed(lobes, row, azimuths[k])) for row, k in np.argwhere(peaks))
 
 
-def _climbed(lobes: Sequence[WeightedLobe], theta_deg: float, phi_deg: float) -> tuple[float, float]:
+def _climbed(lobes: Sequence[WeightedLobe], row: int, phi_deg: float) -> tuple[float, float]:
     """Return the highest place between a scanned one's neighbours in polar angle."""
     from scipy.optimize import minimize_scalar
 
-    k = SCAN_DEG.index(theta_deg)
-    low, high = SCAN_DEG[max(k - 1, 0)], SCAN_DEG[min(k + 1, len(SCAN_DEG) - 1)]
+    low, high = SCAN_DEG[max(row - 1, 0)], SCAN_DEG[min(row + 1, len(SCAN_DEG) - 1)]
 
     def negative(theta: float) -> float:
         return -float(np.max(lobes_albedo(lobes, theta, phi_deg, SIZES[1])))
@@ -112,7 +115,7 @@ def _climbed(lobes: Sequence[WeightedLobe], theta_deg: float, phi_deg: float) ->
     found = minimize_scalar(
         negative, bounds=(low, high), method="bounded", options={"maxiter": 30, "xatol": 1e-6}
     )
-    places = (theta_deg, low, high, float(found.x))
+    places = (SCAN_DEG[row], low, high, float(found.x))
     return max(places, key=lambda theta: -negative(theta)), phi_deg
 
 
