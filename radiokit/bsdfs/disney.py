@@ -1,6 +1,12 @@
-"""Disney: the principled BRDF of 2012, from paint to metal by eleven numbers in [0, 1] that artists turn.
+"""Disney: the principled BRDF of 2012, from paint to metal by numbers in [0, 1] that artists turn.
 
-DOCSTRING
+For pictures, and for a lesson in what is given up for them. It is reciprocal; it conserves energy for some
+parameters only, which is measured for each set: lobes are added, and nothing is taken from the one below. The
+largest albedo of a white surface is 1.050 at 73.6° for roughness 0, 1.090 at 82.3° for 0.5 and 1.601 at
+grazing for 1, where the retro-reflection alone makes 1.557; with subsurface scattering 1.375 at 80.3° (0.5).
+The default roughness conserves up to a base colour of 0.9121. Sheen, which is not divided by π, adds up to
+0.088; a coat on a white mirror makes 1.0094 at normal incidence. A metal of one width conserves, but G knows
+no direction: with widths of 3.16 and 0.32 a white one reaches 1.633 at grazing along x.
 """
 
 from __future__ import annotations
@@ -13,16 +19,16 @@ from typing import Any, ClassVar
 import numpy as np
 
 from radiokit.contracts.bsdf import BSDF, Claims
-from radiokit.contracts.lobes import WeightedLobe, lobes_conserve
+from radiokit.contracts.lobes import linear_lobes, lobes_conserve
 from radiokit.contracts.parameters import Spectrum, parameter
 from radiokit.contracts.scalar import Kernels, ScalarBSDF
 from radiokit.facts.source import Source
 from radiokit.measure.kernels import kernel, select
-from radiokit.measure.passes import run
 from radiokit.measure.twin import Twin
 from radiokit.measure.vectors import from_disk
 from radiokit.physics.facet import reflect
 from radiokit.physics.gtr import gtr1_constants, gtr1_d_symbolic, gtr1_density, gtr1_normal
+from radiokit.physics.interface import schlick_complement_kernel, schlick_kernel
 from radiokit.physics.masking import HORIZON, separable_over_cosines
 from radiokit.physics.ndf import ggx_area, ggx_area_isotropic, ggx_density
 from radiokit.physics.visible import ggx_visible, reflected_density
@@ -39,18 +45,6 @@ SOURCE = Source(
 )
 
 _COAT_WIDTH, _COAT_F0 = 0.25, 0.04
-_PER_PI = 0.3183098861837907
-
-
-@kernel
-def _fifth(d: Any) -> Any:
-    return d * d * (d * d) * d
-
-
-@kernel
-def _rest(c: Any, d: Any) -> Any:
-    """Return 1 − d⁵ for c = 1 − d."""
-    return c * (1.0 + d * (1.0 + d * (1.0 + d * (1.0 + d))))
 
 
 @kernel
@@ -69,11 +63,11 @@ def _value(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, *constants: Any
     cos2 = 0.25 * (hx * hx + hy * hy + hz * hz)  # of θd, between a direction and h
     cosine = np.sqrt(cos2)
     fall = 0.25 * (gx * gx + gy * gy + gz * gz) / (1.0 + cosine)  # 1 − cosθd
-    schlick, rest = _fifth(fall), _rest(cosine, fall)
-    fall_i, fall_o = 1.0 - iz, 1.0 - oz
-    fifth_i, fifth_o, retro = _fifth(fall_i), _fifth(fall_o), rough * cos2
+    schlick, rest = fall * fall * (fall * fall) * fall, schlick_complement_kernel(cosine, 0.0)
+    fifth_i, fifth_o, retro = schlick_kernel(iz, 0.0), schlick_kernel(oz, 0.0), rough * cos2
     diffuse = (1.0 + (2.0 * retro - 0.5) * fifth_i) * (1.0 + (2.0 * retro - 0.5) * fifth_o)
-    flat = (_rest(iz, fall_i) + retro * fifth_i) * (_rest(oz, fall_o) + retro * fifth_o)
+    flat = schlick_complement_kernel(iz, 0.0) + retro * fifth_i
+    flat = flat * (schlick_complement_kernel(oz, 0.0) + retro * fifth_o)
     inside = flat * (1.0 / hz - 0.5) + 0.5
     base = ggx_density(hx, hy, hz, alpha_x, alpha_y) * _masked(iz, oz, alpha_g)
     glaze = gtr1_density(hx, hy, hz, alpha_c, scale) * _masked(iz, oz, _COAT_WIDTH)
@@ -88,10 +82,8 @@ def _density(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, *constants: A
     _, _, _, _, _, _, _, alpha_x, alpha_y, _, alpha_c, scale, _, p_body, p_coat = constants
     above = (iz > HORIZON) & (oz > HORIZON)
     hx, hy, hz = ix + ox, iy + oy, select(above, iz + oz, 1.0)
-    body = _PER_PI * iz
-    base = reflected_density(
-        ggx_density(hx, hy, hz, alpha_x, alpha_y), ggx_area(ox, oy, oz, alpha_x, alpha_y)
-    )
+    area = ggx_area(ox, oy, oz, alpha_x, alpha_y)
+    body, base = iz / np.pi, reflected_density(ggx_density(hx, hy, hz, alpha_x, alpha_y), area)
     glaze = 0.5 * gtr1_density(hx, hy, hz, alpha_c, scale) * hz / (hx * hx + hy * hy + hz * hz)
     total = p_body * body + (1.0 - p_body - p_coat) * base + p_coat * glaze
     return select(above, total, 0.0)
@@ -123,11 +115,11 @@ class Disney(ScalarBSDF):
         Reflectance of the body or, of a metal, at normal incidence [1], in [0, 1]; linear in radiance (the
         source's code takes it to the power of 2.2 first).
     subsurface : float
-        Share [1], in [0, 1], of the diffuse base that scatters as in a thin volume (Hanrahan & Krueger).
+        Share of the diffuse base that scatters as in a thin volume (Hanrahan & Krueger) [1], in [0, 1].
     metallic : float
         Share of metal [1], in [0, 1]: no diffuse base, and a reflectance that is the base colour.
     specular : float
-        Gloss [1], in [0, 1]: 0.08 ``specular`` is the reflectance at normal incidence where there is no metal.
+        Gloss [1], in [0, 1]: 0.08 of it is the reflectance at normal incidence of what is no metal.
     specular_tint, sheen_tint : float
         How much of the base colour's hue gloss and sheen take on [1], in [0, 1].
     roughness : float
@@ -143,6 +135,11 @@ class Disney(ScalarBSDF):
         of ``base_color``: luminance is (0.3, 0.6, 0.1) of three wavelengths, red, green and blue, as in the
         source, and the mean of any other number. A single number has no hue, and black has none: 1.
 
+    Raises
+    ------
+    ParameterError
+        When a parameter is out of its range, or ``tint`` and ``base_color`` differ in length.
+
     >>> import numpy as np
     >>> metal = Disney(base_color=1.0, metallic=1.0, roughness=1.0)
     >>> bool(abs(metal([0, 0, 1], [0, 0, 1]) - 1 / (4 * np.pi)) < 1e-15)
@@ -153,8 +150,16 @@ class Disney(ScalarBSDF):
 
     name = "disney"
     SOURCE = SOURCE
-    EXAMPLES = ({},)
+    EXAMPLES = (
+        {},
+        {"base_color": 0.8, "subsurface": 1.0, "sheen": 1.0, "roughness": 0.8},
+        {"base_color": 0.9, "metallic": 1.0, "roughness": 0.4, "anisotropic": 0.8},
+        {"base_color": (0.7, 0.2, 0.1), "specular_tint": 1.0, "roughness": 0.1, "clearcoat": 1.0},
+        {"base_color": 1.0, "metallic": 1.0, "roughness": 0.0},
+        {"base_color": 1.0, "roughness": 1.0, "sheen": 1.0, "clearcoat": 1.0, "clearcoat_gloss": 0.0},
+    )
     dimensions: ClassVar[int] = 3
+    kind = "principled"
 
     base_color: Spectrum = parameter("[0, 1]", "1", "reflectance of the body", spectral=True, default=0.5)
     subsurface: float = parameter("[0, 1]", "1", "share of subsurface scattering", default=0.0)
@@ -167,38 +172,31 @@ class Disney(ScalarBSDF):
     sheen_tint: float = parameter("[0, 1]", "1", "hue of the sheen", default=0.5)
     clearcoat: float = parameter("[0, 1]", "1", "weight of the coat", default=0.0)
     clearcoat_gloss: float = parameter("[0, 1]", "1", "gloss of the coat", default=1.0)
-    tint: Spectrum | None = parameter(
-        "[0, 1e6]", "1", "base colour over its luminance", spectral=True, default=None
-    )
+    tint: Spectrum | None = parameter("[0, 1e6]", "1", "colour over luminance", spectral=True, default=None)
 
     def symbolic(self) -> Twin:
         """Return the symbolic twin, in the angles of the source."""
         import sympy
 
         from radiokit.measure.twin import DIRECTION_SYMBOLS
-        from radiokit.physics.microfacet import (
-            cosine_symbolic,
-            ggx_d_symbolic,
-            ggx_lambda_symbolic,
-            masking_symbolic,
-        )
+        from radiokit.physics import microfacet as paper
 
-        values: dict[Any, Any] = {
-            sympy.Symbol(name, nonnegative=True): value for name, value in self.parameters().items()
-        }
+        given = self.parameters().items()
+        values: dict[Any, Any] = {sympy.Symbol(name, nonnegative=True): value for name, value in given}
         color, subsurface, metallic, specular, specular_tint, rough, anisotropic, *others = values
         sheen, sheen_tint, clearcoat, gloss, tint = others
         values[tint] = self._tint()
         wi, wo, n = DIRECTION_SYMBOLS[:3], DIRECTION_SYMBOLS[3:], (0, 0, 1)
         half = [i + o for i, o in zip(wi, wo, strict=True)]
-        cos_i, cos_o, cos_d = cosine_symbolic(wi, n), cosine_symbolic(wo, n), cosine_symbolic(wi, half)
-        tenth, thousandth = sympy.Rational(1, 10), sympy.Rational(1, 1000)
+        cos_i, cos_o, cos_d = (paper.cosine_symbolic(*pair) for pair in ((wi, n), (wo, n), (wi, half)))
+        quarter, tenth, thousandth = (sympy.Rational(1, k) for k in (4, 10, 1000))
 
         def mix(a: Any, b: Any, share: Any) -> Any:
             return a * (1 - share) + b * share
 
         def smith(w: Any, alpha: Any) -> Any:
-            return masking_symbolic(ggx_lambda_symbolic(w, alpha, alpha)) / (2 * cosine_symbolic(w, n))
+            smith_g = paper.masking_symbolic(paper.ggx_lambda_symbolic(w, alpha, alpha))
+            return smith_g / (2 * paper.cosine_symbolic(w, n))
 
         fifth_i, fifth_o, fifth_d = ((1 - c) ** 5 for c in (cos_i, cos_o, cos_d))
         retro = 2 * rough * cos_d**2
@@ -209,19 +207,19 @@ class Disney(ScalarBSDF):
         body += sheen * mix(1, tint, sheen_tint) * fifth_d
         f0 = mix(specular * sympy.Rational(2, 25) * mix(1, tint, specular_tint), color, metallic)
         aspect = sympy.sqrt(1 - 9 * tenth * anisotropic)
-        density = ggx_d_symbolic(
+        density = paper.ggx_d_symbolic(
             half, sympy.Max(thousandth, rough**2 / aspect), sympy.Max(thousandth, rough**2 * aspect)
         )
-        alpha_g = ((1 + rough) / 2) ** 2
-        base = density * smith(wi, alpha_g) * smith(wo, alpha_g) * mix(f0, 1, fifth_d)
+        alpha = ((1 + rough) / 2) ** 2
+        base = density * smith(wi, alpha) * smith(wo, alpha) * mix(f0, 1, fifth_d)
         coat = gtr1_d_symbolic(half, mix(tenth, thousandth, gloss)) * mix(sympy.Rational(1, 25), 1, fifth_d)
-        coat *= clearcoat / 4 * smith(wi, sympy.Rational(1, 4)) * smith(wo, sympy.Rational(1, 4))
+        coat *= clearcoat / 4 * smith(wi, quarter) * smith(wo, quarter)
         return Twin(body * (1 - metallic) + base + coat, values)
 
     def kernels(self) -> Kernels:
         """Return the kernels. The lobes are chosen without regard to colour, which may be a spectrum."""
         alpha_x, alpha_y = self._widths()
-        alpha_c = 0.1 * (1.0 - self.clearcoat_gloss) + 0.001 * self.clearcoat_gloss
+        alpha_c = self._coat_width()
         body, base, coat = 1.0 - self.metallic, 0.25 + 0.75 * self.metallic, 0.1 * self.clearcoat
         total = body + base + coat
         shape = (self.roughness, alpha_x, alpha_y, (0.5 + 0.5 * self.roughness) ** 2, alpha_c)
@@ -250,6 +248,9 @@ class Disney(ScalarBSDF):
         aspect = math.sqrt((10.0 - 9.0 * self.anisotropic) / 10.0)
         return max(0.001, square / aspect), max(0.001, square * aspect)
 
+    def _coat_width(self) -> float:
+        return 0.1 * (1.0 - self.clearcoat_gloss) + 0.001 * self.clearcoat_gloss
+
     def _coefficients(self) -> tuple[Any, ...]:
         """Return what multiplies diffuse, subsurface, sheen, the metal's F at 0° and at 90°, and the coat."""
         color, tint = np.asarray(self.base_color), np.asarray(self._tint())
@@ -263,8 +264,7 @@ class Disney(ScalarBSDF):
     @property
     def isotropic(self) -> bool:  # type: ignore[override]
         """Whether both widths are the same."""
-        alpha_x, alpha_y = self._widths()
-        return alpha_x == alpha_y
+        return len(set(self._widths())) == 1
 
     @property
     def smooth(self) -> bool:
@@ -273,12 +273,11 @@ class Disney(ScalarBSDF):
 
     def lobe_width(self) -> float:
         """Return the width of the narrowest lobe."""
-        widths = (*self._widths(), *((self.kernels().constants[10],) if self.clearcoat else ()))
-        return min(1.0, *widths)
+        return min(1.0, *self._widths(), *((self._coat_width(),) if self.clearcoat else ()))
 
     @property
     def claims(self) -> Claims:
-        """Reciprocal; whether it conserves is measured, once for each set of parameters."""
+        """Reciprocal; whether it conserves is measured by a scan of the albedo, once for each set."""
         return Claims(reciprocity="yes", conserves=_conserves(self))
 
 
@@ -291,20 +290,7 @@ def _conserves(model: Disney) -> bool:
     """
     if model.metallic == 1.0 and model.clearcoat == 0.0 and model.isotropic:
         return True
-    shape = model.kernels().constants[6:]
-    coefficients = np.array(np.broadcast_arrays(*(np.atleast_1d(c) for c in model._coefficients())))
-    unit = np.eye(6)
-
-    def evaluate(first: int, last: int) -> Any:
-        chosen = tuple(unit[first:last].T)
-        return lambda wi, wo: run(_value, (*wi.T, *wo.T), (*chosen, *shape))
-
     narrow, wide = sorted(model._widths())
-    parts = ((0, 3, 1.0, 1.0), (3, 5, min(narrow, 1.0), wide / narrow), (5, 6, shape[4], 1.0))
-    return lobes_conserve(
-        [
-            WeightedLobe(evaluate(first, last), width, coefficients[first:last], stretch)
-            for first, last, width, stretch in parts
-            if np.any(coefficients[first:last])
-        ]
-    )
+    parts = ((0, 3, 1.0, 1.0), (3, 5, min(narrow, 1.0), wide / narrow), (5, 6, model._coat_width(), 1.0))
+    shape = model.kernels().constants[6:]
+    return lobes_conserve(linear_lobes(_value, model._coefficients(), shape, parts))
