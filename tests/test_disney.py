@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import radiokit as rk
 from radiokit.bsdfs.disney import Disney
 from radiokit.checks.energy import energy
 from radiokit.contracts.lobes import SCAN_DEG, WeightedLobe, lobes_albedo, lobes_conserve
-from radiokit.facts.directions import spherical_to_cartesian, unit
+from radiokit.faces.plots.lobe_mesh import _peak
+from radiokit.facts.directions import reflect, spherical_to_cartesian, unit
 from radiokit.facts.verdict import Outcome
 
 TINTED = {"specular_tint": 1.0, "sheen": 1.0, "sheen_tint": 0.5, "metallic": 0.2, "subsurface": 0.3}
@@ -70,6 +72,31 @@ def test_the_widths_are_the_sources():
     assert metal.lobe_width() == pytest.approx(0.1**0.5)
     assert Disney(roughness=0.0, anisotropic=1.0).isotropic  # both are held at 0.001
     assert Disney(clearcoat=1.0).lobe_width() == pytest.approx(0.001)
+
+
+# Three uniform numbers, wherever a sampler is called
+
+
+@pytest.mark.parametrize("method", ["mc-bsdf", "mis", "qmc"])
+def test_a_point_is_shaded_by_samples_of_three_numbers(method, seed):
+    f = Disney(base_color=0.6, roughness=0.5, clearcoat=1.0, clearcoat_gloss=0.0)
+    lamp = rk.emitter("constant", radiance=1.0)
+    wo = (0.6, 0.0, 0.8)
+    found = rk.shade(f, lamp, wo, method=method, samples=1 << 13, rng=seed)
+    exact = rk.albedo(f, wo)
+    assert abs(found.value - exact.value) <= 6 * found.error + exact.error
+
+
+def test_paths_in_a_closed_room_take_three_numbers_a_bounce(seed):
+    found = rk.enclosure_radiance(Disney(), emitted=1.0, samples=1 << 10, rng=seed)
+    assert 1.0 < found.value < 1 / (1 - 0.58)
+
+
+def test_a_lobe_is_found_and_drawn():
+    f = Disney(metallic=1.0, roughness=0.4, anisotropic=0.8)
+    wo = spherical_to_cartesian(np.radians(60.0), 0.0)
+    pole = _peak(f, wo, lambda w: f.evaluate(w, np.broadcast_to(wo, w.shape)))
+    assert f(pole, wo) >= f(reflect(wo), wo)
 
 
 # Energy
