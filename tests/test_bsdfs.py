@@ -96,6 +96,17 @@ def oren_nayar_full_albedo(sigma: float) -> float:
     return 1 - 0.5 * sigma**2 / (sigma**2 + 0.33) + 0.17 * sigma**2 / (sigma**2 + 0.13)
 
 
+DISNEY = (
+    *("base_color", "subsurface", "metallic", "specular", "specular_tint", "roughness", "anisotropic"),
+    *("sheen", "sheen_tint", "clearcoat", "clearcoat_gloss"),
+)
+
+
+def rough_metal_albedo(theta_deg: float) -> float:
+    """Return 2 (1 − ln 2)/(1 + μ), the albedo of GGX at α = 1 with independent shadowing and masking."""
+    return float(2 * (1 - np.log(2)) / (1 + np.cos(np.radians(theta_deg))))
+
+
 def out_of_range(name: str, value: Any, interval: str, spectral: bool = False) -> tuple[dict[str, Any], str]:
     more = ", or a sequence of them, one a wavelength" if spectral else ""
     return {name: value}, f"{name} = {value!r} is not allowed: it must be a number in {interval}{more}"
@@ -536,6 +547,35 @@ ROWS = (
             {"alpha": 1.0, "eta": 1.45, "k": 0.0},
         ),
         wrong=(out_of_range("alpha", 0, "[1e-4, 1]"), *WRONG_INDEX),
+    ),
+    Row(
+        "disney",
+        ordinary=(
+            {},
+            {"base_color": 0.4, "specular_tint": 0.7, "sheen": 0.6, "sheen_tint": 1.0, "tint": 1.5},
+            {"base_color": 0.9, "metallic": 1.0, "roughness": 0.4, "anisotropic": 0.8},
+            {"base_color": 0.8, "subsurface": 1.0, "sheen": 1.0, "roughness": 0.8},
+            {"base_color": 0.7, "metallic": 0.3, "roughness": 0.2, "clearcoat": 1.0, "clearcoat_gloss": 0.4},
+        ),
+        hard=(
+            {"base_color": 1.0, "metallic": 1.0, "roughness": 0.0},
+            {"base_color": 1.0, "metallic": 1.0, "roughness": 1.0, "anisotropic": 1.0},
+            {"base_color": 0.0, "specular": 0.0, "roughness": 0.0, "clearcoat": 1.0},
+            {"base_color": 0.0, "specular": 0.0, "roughness": 1.0, "sheen": 1.0},
+            {"base_color": 0.0, "specular": 0.0, "metallic": 1.0, "roughness": 0.03, "anisotropic": 1.0},
+            dict.fromkeys(DISNEY, 1.0),
+        ),
+        wrong=(
+            out_of_range("base_color", 1.5, "[0, 1]", spectral=True),
+            *(out_of_range(name, -0.1, "[0, 1]") for name in DISNEY[1:]),
+            out_of_range("roughness", None, "[0, 1]"),
+            out_of_range("tint", -1.0, "[0, 1e6]", spectral=True),
+        ),
+        # White metal of α = 1 with independent shadowing and masking: f = 1/(π (1 + cosθi) (1 + cosθo)).
+        albedos=tuple(
+            ({"base_color": 1.0, "metallic": 1.0, "roughness": 1.0}, t, rough_metal_albedo(t))
+            for t in (0.0, 30.0, 60.0, 89.0, 89.9)
+        ),
     ),
 )
 

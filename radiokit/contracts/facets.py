@@ -70,7 +70,7 @@ class FacetBSDF(ScalarBSDF):
     A subclass gives its ``LAW``; it is in V-grooves and of one width unless it is a ``RoughMirror``.
     """
 
-    kind: ClassVar[str] = "microfacet"
+    kind = "microfacet"
     LAW: ClassVar[Law]
 
     alpha: float | None = parameter(WIDTH, "1", "width of the slope distribution", default=None)
@@ -230,6 +230,6 @@ class RoughMirror(FacetBSDF):
         return self.alpha_x, self.alpha_y
 
     @property
-    def isotropic(self) -> bool:  # type: ignore[override]
+    def isotropic(self) -> bool:
         """Whether the widths are the same."""
         return self.widths[0] == self.widths[1]
