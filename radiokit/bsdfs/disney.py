@@ -262,7 +262,7 @@ class Disney(ScalarBSDF):
         return paint, volume, fuzz, gloss * dielectric + color * metallic, 1.0, 0.25 * self.clearcoat
 
     @property
-    def isotropic(self) -> bool:  # type: ignore[override]
+    def isotropic(self) -> bool:
         """Whether both widths are the same."""
         return len(set(self._widths())) == 1
 
