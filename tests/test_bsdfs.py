@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from radiokit.bsdfs import ggx
 from radiokit.bsdfs.ggx import GGX
 from radiokit.bsdfs.lambert import Lambert
 from radiokit.checks.judge import check
@@ -34,6 +33,7 @@ from radiokit.measure.proof import proved_zero
 from radiokit.measure.quadrature import hemisphere
 from radiokit.measure.slope import find_lobe
 from radiokit.measure.statistics import sidak, z_test
+from radiokit.physics.ndf import ggx_density
 
 
 @dataclass(frozen=True)
@@ -96,9 +96,47 @@ def oren_nayar_full_albedo(sigma: float) -> float:
     return 1 - 0.5 * sigma**2 / (sigma**2 + 0.33) + 0.17 * sigma**2 / (sigma**2 + 0.13)
 
 
+DISNEY = (
+    *("base_color", "subsurface", "metallic", "specular", "specular_tint", "roughness", "anisotropic"),
+    *("sheen", "sheen_tint", "clearcoat", "clearcoat_gloss"),
+)
+
+
+def rough_metal_albedo(theta_deg: float) -> float:
+    """Return 2 (1 − ln 2)/(1 + μ), the albedo of GGX at α = 1 with independent shadowing and masking."""
+    return float(2 * (1 - np.log(2)) / (1 + np.cos(np.radians(theta_deg))))
+
+
 def out_of_range(name: str, value: Any, interval: str, spectral: bool = False) -> tuple[dict[str, Any], str]:
     more = ", or a sequence of them, one a wavelength" if spectral else ""
     return {name: value}, f"{name} = {value!r} is not allowed: it must be a number in {interval}{more}"
+
+
+WRONG_INDEX: tuple[tuple[dict[str, Any], str], ...] = (
+    out_of_range("eta", 0.0, "(0, inf)", spectral=True),
+    out_of_range("k", -1.0, "[0, inf)", spectral=True),
+    out_of_range("f0", 1.5, "[0, 1]", spectral=True),
+    ({"eta": 1.5}, "k = None is not allowed: it must be given, as eta is: an index has both parts"),
+    ({"k": 1.5}, "eta = None is not allowed: it must be given, as k is: an index has both parts"),
+    (
+        {"eta": 0.2, "k": 3.9, "f0": 0.9},
+        "f0 = 0.9 is not allowed: it must be left out, as eta and k are given: either says what facets do",
+    ),
+)
+"""What every model of facets refuses."""
+
+WRONG_WIDTHS: tuple[tuple[dict[str, Any], str], ...] = (
+    out_of_range("alpha_y", 2, "[1e-4, 1]"),
+    (
+        {"alpha_x": 0.5},
+        "alpha_y = None is not allowed: it must be given, as alpha_x is: or give alpha, the width both ways",
+    ),
+    (
+        {"alpha": 0.5, "alpha_x": 0.5, "alpha_y": 0.1},
+        "alpha = 0.5 is not allowed: it must be left out, as alpha_x and alpha_y are given",
+    ),
+)
+"""What every such model of two widths refuses."""
 
 
 ROWS = (
@@ -137,6 +175,8 @@ ROWS = (
             {"alpha": 1.0},
             {"alpha": 0.1, "eta": 0.2, "k": 3.9},
             {"alpha": 0.5, "eta": 1.5, "k": 0.0},
+            {"alpha_x": 0.1, "alpha_y": 0.5, "f0": 0.6},
+            {"alpha": 0.6, "masking": "separable"},
         ),
         hard=(
             {"alpha": 1e-3},
@@ -145,14 +185,19 @@ ROWS = (
             {"alpha": 0.7, "eta": 1 + 1e-12, "k": 0.0},
             {"alpha": 0.7, "eta": 1.0, "k": 0.0},
             {"alpha": 0.05, "eta": 1e-6, "k": 1e6},
+            {"alpha": 1e-3, "f0": 0.0},
+            {"alpha_x": 1e-3, "alpha_y": 1.0},
+            {"alpha_x": 0.5, "alpha_y": 0.1, "masking": "separable", "eta": 0.2, "k": 3.9},
         ),
         wrong=(
             out_of_range("alpha", 0, "[1e-4, 1]"),
             out_of_range("alpha", -1, "[1e-4, 1]"),
-            out_of_range("eta", 0.0, "(0, inf)", spectral=True),
-            out_of_range("k", -1.0, "[0, inf)", spectral=True),
-            ({"eta": 1.5}, "k = None is not allowed: it must be given, as eta is: an index has both parts"),
-            ({"k": 1.5}, "eta = None is not allowed: it must be given, as k is: an index has both parts"),
+            *WRONG_WIDTHS,
+            *WRONG_INDEX,
+            (
+                {"masking": "v-groove"},
+                "masking = 'v-groove' is not allowed: it must be 'height-correlated' or 'separable'",
+            ),
         ),
         albedos=tuple(({"alpha": 1.0}, t, ggx_albedo(t)) for t in (0.0, 30.0, 60.0, 89.0, 89.9)),
     ),
@@ -460,6 +505,78 @@ ROWS = (
             for r, t in ((0.5, 0.0), (0.45, 72.0), (0.2, 60.0), (1.0, 89.9))
         ),
     ),
+    Row(
+        "beckmann",
+        ordinary=(
+            {},
+            {"alpha": 1.0},
+            {"alpha": 0.1, "eta": 0.2, "k": 3.9},
+            {"alpha_x": 0.1, "alpha_y": 0.5, "f0": 0.6},
+            {"alpha": 0.6, "masking": "separable"},
+            {"alpha": 0.4, "masking": "v-groove"},
+        ),
+        hard=(
+            {"alpha": 1e-3},
+            {"alpha": 1e-4},
+            {"alpha": 1e-4, "eta": 0.2, "k": 3.9},
+            {"alpha_x": 1e-3, "alpha_y": 1.0},
+            {"alpha": 1e-3, "masking": "v-groove"},
+            {"alpha": 1.0, "masking": "v-groove", "eta": 1.5, "k": 0.0},
+            {"alpha_x": 0.5, "alpha_y": 0.1, "masking": "separable", "eta": 0.2, "k": 3.9},
+        ),
+        wrong=(
+            out_of_range("alpha", 0, "[1e-4, 1]"),
+            *WRONG_WIDTHS,
+            *WRONG_INDEX,
+            (
+                {"masking": "smith"},
+                "masking = 'smith' is not allowed: it must be 'height-correlated', 'separable' or 'v-groove'",
+            ),
+        ),
+    ),
+    Row(
+        "cook_torrance",
+        ordinary=({}, {"alpha": 0.4, "f0": 0.04}, {"alpha": 0.1, "eta": 0.2, "k": 3.9}),
+        hard=(
+            {"alpha": 1e-3},
+            {"alpha": 1e-4, "eta": 0.2, "k": 3.9},
+            # On both sides of where F outweighs the paper's factor.
+            {"alpha": 1.0, "f0": 0.03},
+            {"alpha": 1.0, "f0": 0.04},
+            {"alpha": 0.9, "f0": 0.0},
+            {"alpha": 1.0, "eta": 1.45, "k": 0.0},
+        ),
+        wrong=(out_of_range("alpha", 0, "[1e-4, 1]"), *WRONG_INDEX),
+    ),
+    Row(
+        "disney",
+        ordinary=(
+            {},
+            {"base_color": 0.4, "specular_tint": 0.7, "sheen": 0.6, "sheen_tint": 1.0, "tint": 1.5},
+            {"base_color": 0.9, "metallic": 1.0, "roughness": 0.4, "anisotropic": 0.8},
+            {"base_color": 0.8, "subsurface": 1.0, "sheen": 1.0, "roughness": 0.8},
+            {"base_color": 0.7, "metallic": 0.3, "roughness": 0.2, "clearcoat": 1.0, "clearcoat_gloss": 0.4},
+        ),
+        hard=(
+            {"base_color": 1.0, "metallic": 1.0, "roughness": 0.0},
+            {"base_color": 1.0, "metallic": 1.0, "roughness": 1.0, "anisotropic": 1.0},
+            {"base_color": 0.0, "specular": 0.0, "roughness": 0.0, "clearcoat": 1.0},
+            {"base_color": 0.0, "specular": 0.0, "roughness": 1.0, "sheen": 1.0},
+            {"base_color": 0.0, "specular": 0.0, "metallic": 1.0, "roughness": 0.03, "anisotropic": 1.0},
+            dict.fromkeys(DISNEY, 1.0),
+        ),
+        wrong=(
+            out_of_range("base_color", 1.5, "[0, 1]", spectral=True),
+            *(out_of_range(name, -0.1, "[0, 1]") for name in DISNEY[1:]),
+            out_of_range("roughness", None, "[0, 1]"),
+            out_of_range("tint", -1.0, "[0, 1e6]", spectral=True),
+        ),
+        # White metal of α = 1 with independent shadowing and masking: f = 1/(π (1 + cosθi) (1 + cosθo)).
+        albedos=tuple(
+            ({"base_color": 1.0, "metallic": 1.0, "roughness": 1.0}, t, rough_metal_albedo(t))
+            for t in (0.0, 30.0, 60.0, 89.0, 89.9)
+        ),
+    ),
 )
 
 
@@ -511,7 +628,7 @@ def test_a_kernel_that_loses_digits_is_rejected(rng):
     def common(wi, wo):
         z = half_vector(wi, wo)[:, 2]
         density = f.alpha**2 / (np.pi * ((f.alpha**2 - 1) * z * z + 1) ** 2)
-        good = ggx._distribution(*(wi + wo).T, f.alpha)
+        good = ggx_density(*(wi + wo).T, f.alpha, f.alpha)
         return f.evaluate(wi, wo) / good * density
 
     assert worst_ulps(common, f.symbolic(), *hard_pairs(f, rng)) > 1e6
@@ -613,36 +730,47 @@ def test_machine_code_gives_the_bits_that_numpy_gives(row, rng):
         np.testing.assert_array_equal(one, other)
 
 
+def spectral_sets(row: Row) -> dict[tuple[str, ...], dict[str, Any]]:
+    """Return a parameter set for each choice of the spectral parameters that the ordinary sets give."""
+    declared = parameters_of(type(bsdf(row.name)))
+    found = {}
+    for parameters in row.ordinary:
+        f = bsdf(row.name, **parameters)
+        names = tuple(n for n in declared if declared[n].spectral and getattr(f, n) is not None)
+        found.setdefault(names, parameters)
+    given = {name for names in found for name in names}
+    assert given == {name for name in declared if declared[name].spectral}
+    return {names: parameters for names, parameters in found.items() if names}
+
+
 @models
 def test_a_spectrum_is_its_wavelengths(row, rng):
     """Every parameter that may be a spectrum is one, of three wavelengths and of one."""
-    declared = parameters_of(type(bsdf(row.name)))
-    names = [name for name in declared if declared[name].spectral]
-    given = (p for p in row.ordinary if all(getattr(bsdf(row.name, **p), name) is not None for name in names))
-    single = bsdf(row.name, **next(given))
-    for factors in ([1.0, 0.9, 0.5], [0.75]) if names else ():
-        spectra = {name: getattr(single, name) * np.array(factors) for name in names}
-        f = dataclasses.replace(single, **spectra)
-        assert hash(f) == hash(dataclasses.replace(f))
-        wi, wo = hard_pairs(single, rng)
-        u = rng.random((len(wo), f.dimensions))
-        found = f.evaluate(wi, wo), f.pdf(wi, wo), *f.sample(u, wo)
-        for k in range(len(factors)):
-            one = f.wavelength(k)
-            assert [getattr(one, name) for name in names] == [getattr(f, name)[k] for name in names]
-            np.testing.assert_array_equal(found[0][:, k], one.evaluate(wi, wo))
-            np.testing.assert_array_equal(found[1], one.pdf(wi, wo))
-            np.testing.assert_array_equal(found[2], one.sample(u, wo)[0])
-            np.testing.assert_array_equal(found[3][:, k], one.sample(u, wo)[1])
-        sky = spherical_to_cartesian(1.0, 0.3)
-        total = directional_albedo(f, sky, rtol=1e-6)
-        parts = [directional_albedo(f.wavelength(k), sky, rtol=1e-6) for k in range(len(factors))]
-        assert np.shape(total.value) == (len(factors),)
-        for k, part in enumerate(parts):
-            assert abs(total.value[k] - part.value) <= total.error[k] + part.error
-        sampled = albedo(f, sky, method="mc", samples=2000, rng=rng)
-        assert np.shape(sampled.value) == (len(factors),)
-        assert f.symbolic().expression == single.symbolic().expression
+    for names, parameters in spectral_sets(row).items():
+        single = bsdf(row.name, **parameters)
+        for factors in ([1.0, 0.9, 0.5], [0.75]):
+            spectra = {name: getattr(single, name) * np.array(factors) for name in names}
+            f = dataclasses.replace(single, **spectra)
+            assert hash(f) == hash(dataclasses.replace(f))
+            wi, wo = hard_pairs(single, rng)
+            u = rng.random((len(wo), f.dimensions))
+            found = f.evaluate(wi, wo), f.pdf(wi, wo), *f.sample(u, wo)
+            for k in range(len(factors)):
+                one = f.wavelength(k)
+                assert [getattr(one, name) for name in names] == [getattr(f, name)[k] for name in names]
+                np.testing.assert_array_equal(found[0][:, k], one.evaluate(wi, wo))
+                np.testing.assert_array_equal(found[1], one.pdf(wi, wo))
+                np.testing.assert_array_equal(found[2], one.sample(u, wo)[0])
+                np.testing.assert_array_equal(found[3][:, k], one.sample(u, wo)[1])
+            sky = spherical_to_cartesian(1.0, 0.3)
+            total = directional_albedo(f, sky, rtol=1e-6)
+            parts = [directional_albedo(f.wavelength(k), sky, rtol=1e-6) for k in range(len(factors))]
+            assert np.shape(total.value) == (len(factors),)
+            for k, part in enumerate(parts):
+                assert abs(total.value[k] - part.value) <= total.error[k] + part.error
+            sampled = albedo(f, sky, method="mc", samples=2000, rng=rng)
+            assert np.shape(sampled.value) == (len(factors),)
+            assert f.symbolic().expression == single.symbolic().expression
 
 
 def test_a_spectrum_out_of_range_or_of_another_length_is_named():
@@ -864,3 +992,33 @@ def test_ggx_is_the_same_both_ways_to_the_last_bit(rng):
     f = GGX(alpha=0.2, eta=0.2, k=3.9)
     wi, wo = hard_pairs(f, rng)
     np.testing.assert_array_equal(f.evaluate(wi, wo), f.evaluate(wo, wi))
+
+
+def test_cook_and_torrance_is_four_times_beckmann_in_grooves(rng):
+    for given in ({"f0": 0.04}, {"eta": 0.2, "k": 3.9}):
+        f, g = bsdf("cook_torrance", **given), bsdf("beckmann", masking="v-groove", **given)
+        wi, wo = hard_pairs(f, rng)
+        np.testing.assert_array_equal(f.evaluate(wi, wo), 4.0 * g.evaluate(wi, wo))
+        np.testing.assert_array_equal(f.pdf(wi, wo), g.pdf(wi, wo))
+
+
+@pytest.mark.parametrize("given", [{}, {"alpha": 0.8, "f0": 0.02}, {"eta": 0.2, "k": 3.9}], ids=repr)
+def test_what_cook_and_torrance_reflect_at_grazing_incidence_is_the_limit(given):
+    f = bsdf("cook_torrance", **given)
+    wo = spherical_to_cartesian(np.radians(90 - 1e-4), 0.3)
+    found = float(directional_albedo(f, wo, rtol=1e-5).value)
+    assert found == pytest.approx(f.grazing_albedo(), rel=2e-5)
+    spectral = dataclasses.replace(f, **{name: (given[name],) * 2 for name in given if name != "alpha"})
+    np.testing.assert_allclose(spectral.grazing_albedo(), f.grazing_albedo(), rtol=1e-14)
+
+
+@pytest.mark.parametrize("name", ["ggx", "beckmann"])
+def test_equal_widths_are_one_width(name, rng):
+    one, two = bsdf(name, alpha=0.2), bsdf(name, alpha_x=0.2, alpha_y=0.2)
+    assert one.isotropic
+    assert two.isotropic
+    assert not bsdf(name, alpha_x=0.2, alpha_y=0.3).isotropic
+    wi, wo = hard_pairs(one, rng)
+    np.testing.assert_array_equal(one.evaluate(wi, wo), two.evaluate(wi, wo))
+    almost = bsdf(name, alpha_x=0.2, alpha_y=np.nextafter(0.2, 1))
+    np.testing.assert_allclose(almost.evaluate(wi, wo), one.evaluate(wi, wo), rtol=1e-13)

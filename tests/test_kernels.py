@@ -13,7 +13,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from radiokit.bsdfs.ggx import _density, _sample, _value
+from radiokit.bsdfs.ggx import GGX
 from radiokit.contracts.albedo import albedo, directional_albedo
 from radiokit.contracts.bsdf import bsdf
 from radiokit.facts.directions import spherical_to_cartesian
@@ -354,12 +354,16 @@ def test_albedo_by_monte_carlo_covers_the_truth_as_often_as_it_says(name, parame
     assert all(e.converged and e.seconds > 0 and not e.note for e in found)
 
 
+ggx = GGX().kernels()
+ggx_value, ggx_density, ggx_sample = ggx.value, ggx.density, ggx.sample
+
+
 @kernel
-def wider(u0, u1, ox, oy, oz, alpha):
+def wider(u0, u1, ox, oy, oz, alpha, same):
     """Planted: facets of another width than the weight is for."""
-    wx, wy, wz, _ = _sample(u0, u1, ox, oy, oz, 1.01 * alpha)
-    density = _density(wx, wy, wz, ox, oy, oz, alpha)
-    value = _value(wx, wy, wz, ox, oy, oz, alpha)
+    wx, wy, wz, _ = ggx_sample(u0, u1, ox, oy, oz, 1.01 * alpha, 1.01 * alpha)
+    density = ggx_density(wx, wy, wz, ox, oy, oz, alpha, alpha)
+    value = ggx_value(wx, wy, wz, ox, oy, oz, alpha, alpha)
     return wx, wy, wz, wz * value / select(density > 0.0, density, 1.0)
 
 

@@ -264,9 +264,11 @@ def rough_diffuse(wi, wo):
 def test_a_rough_diffuse_surface_takes_few_evaluations(theta_deg, phi):
     theta = np.radians(theta_deg)
     wo = np.array([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)])
-    s, c = np.sin(theta), np.cos(theta)
-    a, b = 1 - 0.5 * 0.09 / 0.42, 0.45 * 0.09 / 0.18
-    exact = a + b / np.pi * (s * (theta - s * c) + 2 / 3 * s / c * (1 - s**3))
+    with mpmath.workdps(30):
+        t = mpmath.mpf(float(theta))
+        s, c = mpmath.sin(t), mpmath.cos(t)
+        a, b = 1 - 0.5 * 0.09 / 0.42, 0.45 * 0.09 / 0.18
+        exact = float(a + b / mpmath.pi * (s * (t - s * c) + 2 * s / c * (1 - s**3) / 3))
     found = hemisphere(lambda w: rough_diffuse(w, wo), wo=wo, rtol=1e-10)
     assert found.converged
     assert found.evaluations < 40_000

@@ -61,6 +61,14 @@ def test_a_value_that_does_not_settle_is_an_error():
         twin.at(1.0)
 
 
+def test_a_division_by_zero_means_the_limit_where_there_is_one():
+    x = sympy.Symbol("x")
+    for expression in (sympy.sin(x) / x, sympy.erf(1 / x) + sympy.exp(-1 / x**2) / x):
+        assert abs(Twin(expression, {}, (x,)).at(0.0) - 1) < mpmath.mpf(10) ** -50
+    with pytest.raises(RadiokitError, match="no 50 digits"):
+        Twin(1 / x, {}, (x,)).at(0.0)
+
+
 def test_a_complex_value_is_an_error():
     with pytest.raises(RadiokitError, match="is complex"):
         Twin(sympy.sqrt(A - B), {B: 2.0}, (A,)).at(1.0)

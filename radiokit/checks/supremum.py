@@ -26,6 +26,9 @@ AZIMUTHS = 24
 FINE, COARSE, CHEAP = 24, 16, 12
 """Nodes along each axis of the scan's two rules, and of the only rule when evaluations are dear."""
 
+LONG = 3
+"""Times as many nodes in azimuth where f is not isotropic: a lobe may be ten times as long as wide."""
+
 MOST = 8
 """Scanned directions from which the search climbs."""
 
@@ -79,10 +82,11 @@ def scan_supremum(
     """
     pieces = parts(f, fixed, below)
     sides = (1 if f.isotropic else 2) * len(pieces)
-    per_angle = sides * (FINE**2 + COARSE**2)
-    rich = 0.7 * budget >= per_angle * (GRAZING / STEP + 40)
+    least = sides * (FINE**2 + COARSE**2) * (GRAZING / STEP + 40)
+    long = 1 if turns or 0.7 * budget < LONG * least else LONG
+    rich = 0.7 * budget >= long * least
     fine, coarse = (FINE, COARSE) if rich else (CHEAP, 0)
-    per_angle = sides * (fine**2 + coarse**2)
+    per_angle = long * sides * (fine**2 + coarse**2)
     affordable = int(0.7 * budget / per_angle)
     count = int(np.clip(affordable, FEWEST, GRAZING / STEP + 1))
     theta = np.linspace(0.0, GRAZING, count)
@@ -101,8 +105,8 @@ def scan_supremum(
     aimed = [_aim(piece, theta, phi, rich) for piece in pieces]
     aims, evaluations = tuple(aim for aim, _ in aimed), sum(spent for _, spent in aimed)
     w = polar(np.cos(theta), phi)
-    one = _scan(pieces, w, aims, 1.0, fine)
-    two = _scan(pieces, w, aims, 1.3, coarse) if coarse else one
+    one = _scan(pieces, w, aims, 1.0, (fine, long * fine))
+    two = _scan(pieces, w, aims, 1.3, (coarse, long * coarse)) if coarse else one
     evaluations += len(theta) * per_angle
     doubt = np.abs(one - two)
     # The ends, what is surely highest, and what may be higher still.
@@ -134,7 +138,8 @@ def scan_supremum(
         return found
 
     for index in tops:
-        direction, spent = _refined(pieces, theta, phi, aims, index, step, turns, left // (8 * len(tops)))
+        most = left // (8 * len(tops))
+        direction, spent = _refined(pieces, theta, phi, aims, index, step, turns, most, long)
         evaluations += spent
         for candidate in (w[index], direction):
             found = _worst_channel(integrate(index, candidate, rtol=0.0, atol=tolerance))
@@ -203,11 +208,11 @@ def _aim(part: Part, theta: FloatArray, phi: FloatArray, rich: bool) -> tuple[_A
 
 
 def _scan(
-    pieces: tuple[Part, ...], w: FloatArray, aims: tuple[_Aim, ...], scale: float, n: int
+    pieces: tuple[Part, ...], w: FloatArray, aims: tuple[_Aim, ...], scale: float, n: tuple[int, int]
 ) -> FloatArray:
     """Integrate at every direction of ``w`` (M, 3) with one rule; the largest channel of each."""
     first = pieces[0]
-    blocks = _blocks(len(w), 2 * n * n)
+    blocks = _blocks(len(w), 2 * n[0] * n[1])
     found = []
     for block in blocks:
         sums = delta_share(first.f, flipped(w[block], first.below))
@@ -223,7 +228,7 @@ def _blocks(count: int, cost: int) -> Iterator[slice]:
         yield slice(start, start + size)
 
 
-def _integrals(part: Part, w: FloatArray, aim: _Aim, scale: float, n: int) -> FloatArray:
+def _integrals(part: Part, w: FloatArray, aim: _Aim, scale: float, n: tuple[int, int]) -> FloatArray:
     other, weight = slope_rule(part.aim(w), scale * aim.width, n, symmetric=part.f.isotropic)
     other[aim.retro] = turned(other[aim.retro])
     flat = other.reshape(-1, 3)
@@ -257,12 +262,13 @@ def _refined(
     step: float,
     turns: bool,
     budget: int,
+    long: int,
 ) -> tuple[FloatArray, int]:
     """Climb from a scanned angle to the highest albedo between its neighbours."""
     from scipy.optimize import minimize, minimize_scalar
 
     n = 32 if budget > 60_000 else CHEAP
-    cost = n * n * len(pieces) * (1 if pieces[0].f.isotropic else 2)
+    cost = long * n * n * len(pieces) * (1 if pieces[0].f.isotropic else 2)
     here = tuple(aim[index : index + 1] for aim in aims)
     start = polar(np.cos(theta[index : index + 1]), phi[index : index + 1])[0]
     evaluations = int(min(budget // cost, 25))
@@ -275,7 +281,7 @@ def _refined(
         nonlocal spent
         spent += cost
         w = polar(np.cos([t]), [p])
-        return -float(_scan(pieces, w, here, 1.0, n)[0])
+        return -float(_scan(pieces, w, here, 1.0, (n, long * n))[0])
 
     if turns:
         found = minimize_scalar(

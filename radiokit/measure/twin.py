@@ -163,11 +163,20 @@ class Twin:
         return [mpmath.mpf(float(number)) for number in numbers]
 
     def _real(self, *numbers: mpmath.mpf) -> mpmath.mpf:
-        """Evaluate at mpmath's present precision and drop the imaginary part, which must be 0."""
+        """Evaluate at mpmath's present precision and drop the imaginary part, which must be 0.
+
+        Where the formula divides by 0, the limit is meant: arguments that are 0 are moved, less at a higher
+        precision, so that only a limit gives the same value at two of them.
+        """
         import mpmath
 
-        symbols = (*self.arguments, *self.parameters)
-        value = mpmath.mpmathify(compiled(self.expression, symbols)(*numbers))
+        function = compiled(self.expression, (*self.arguments, *self.parameters))
+        try:
+            value = mpmath.mpmathify(function(*numbers))
+        except ZeroDivisionError:
+            places = min(mpmath.mp.dps, 100 + mpmath.mp.dps // 10)  # more, and exp(−1/x²) takes seconds
+            beside = mpmath.mpf(10) ** -places
+            value = mpmath.mpmathify(function(*(number or beside for number in numbers)))
         if isinstance(value, mpmath.mpc):
             if abs(value.imag) > mpmath.sqrt(mpmath.eps) * abs(value.real):
                 raise RadiokitError(f"{self.expression} is complex at {numbers}", values=numbers)

@@ -98,7 +98,7 @@ def enclosure_radiance(
 
 def _absorbs_nothing(f: BSDF) -> bool:
     """Return whether every sample of every probed direction keeps all of its weight."""
-    u = kronecker(64, 2)
+    u = kronecker(64, f.dimensions)
     for wo in _PROBE:
         _, weight = f.sample(u, np.broadcast_to(wo, (len(u), 3)))
         if np.any(np.mean(weight, axis=0) < 1 - 1e-12):
@@ -123,14 +123,14 @@ def _walk(
                 f"after {_MEAN_BOUNCES} bounces for each path there is no end: the albedo of {f!r} is 1 "
                 "or more, or nearly so, and the radiance diverges or cannot be sampled"
             )
-        u = generator.random((len(path), 3))
-        wi, weight = f.sample(u[:, :2], local_wo)
+        u = generator.random((len(path), f.dimensions + 1))
+        wi, weight = f.sample(u[:, :-1], local_wo)
         if throughput is None:  # now the number of wavelengths is known
             throughput = np.ones(weight.shape)
             total = np.full(weight.shape, emitted)
         throughput = throughput * weight
         survival = np.minimum(throughput.reshape(len(path), -1).max(axis=1), 1.0)
-        keep = (u[:, 2] < survival) & (wi[:, 2] > 0)
+        keep = (u[:, -1] < survival) & (wi[:, 2] > 0)
         path, wi, position = path[keep], wi[keep], position[keep]
         throughput = (throughput[keep].T / survival[keep]).T
         w = to_world(frame(-position / radius), wi)

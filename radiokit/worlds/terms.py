@@ -200,7 +200,8 @@ class Term:
         strategy = self.best_sampling if method == "qmc" else method
         sampler: Callable[[FloatArray], FloatArray]
         sampler = {"mc-bsdf": self._from_bsdf, "mc-light": self._from_light, "mis": self._both}[strategy]
-        dimensions = 4 if strategy == "mis" else 2
+        dimensions = {"mc-bsdf": 0, "mc-light": 2, "mis": 2}[strategy]
+        dimensions += 0 if strategy == "mc-light" else self.f.dimensions
         count = MAX_SAMPLES if samples is None else samples
         rtol = rtol if samples is None else None
         if method == "qmc":
@@ -237,8 +238,8 @@ class Term:
     def _both(self, u: FloatArray) -> FloatArray:
         """Return f L cosθ / (p_material + p_light), summed over a sample of each."""
         rows = np.broadcast_to(self.wo, (len(u), 3))
-        by_material, _ = self.f.sample(u[:, :2], rows)
-        towards, _ = self.light.sample(u[:, 2:], self.receiver.origin)
+        by_material, _ = self.f.sample(u[:, :-2], rows)
+        towards, _ = self.light.sample(u[:, -2:], self.receiver.origin)
         total: Any = 0.0
         for wi in (by_material, self.receiver.to_local(towards)):
             use = (wi[:, 2] > 0) & ~self._is_delta(wi)

@@ -12,6 +12,7 @@ from radiokit.contracts.bsdf import BSDF, FloatArray
 from radiokit.faces.plots.offscreen import require_pyvista
 from radiokit.facts.directions import check_directions, frame, reflect
 from radiokit.facts.errors import ParameterError
+from radiokit.measure.lattice import kronecker
 
 if TYPE_CHECKING:
     import pyvista
@@ -140,6 +141,8 @@ def _peak(model: BSDF, view: FloatArray, value: Any) -> FloatArray:
     cos_theta, phi = np.sqrt(u[:, 0]), 2 * np.pi * u[:, 1]
     sin_theta = np.sqrt(1 - u[:, 0])
     grid = np.stack([sin_theta * np.cos(phi), sin_theta * np.sin(phi), cos_theta], axis=-1)
+    if model.dimensions > 2:
+        u = np.concatenate([u, kronecker(len(u), model.dimensions - 2)], axis=1)
     sampled, _ = model.sample(u, np.broadcast_to(view, (len(u), 3)).copy())
     sampled = sampled[np.isfinite(sampled).all(axis=-1) & (sampled[:, 2] > 0)]
     candidates = np.concatenate([[reflect(view), [0.0, 0.0, 1.0], view], grid, sampled])
