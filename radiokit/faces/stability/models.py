@@ -24,6 +24,7 @@ __all__ = ["Examined", "ModelStability", "chosen_models", "examine", "model_stab
 
 _DIGITS = 50
 _FEW, _MORE = 60, 130  # digits of two evaluations that usually agree, so that thousands are not needed
+_MOST = 2000
 _ULP_DIGITS = 16  # a step of 1e-16, which is what float64 does to its inputs
 _TINY = 1e-290  # below it a kernel may give 0, since exp(x) is 0 for x < -708
 _THIN = 2  # of the ordinary pairs one in so many, unless the grid is dense
@@ -234,7 +235,13 @@ def _truth(twin: Twin, wi: FloatArray, wo: FloatArray) -> Any:
     with working_precision(_MORE):
         if more and abs(few - more) <= abs(more) / 10**_DIGITS:
             return more
-    return twin.evaluate(wi, wo, digits=_DIGITS)
+    try:
+        return twin.evaluate(wi, wo, digits=_DIGITS)
+    except RadiokitError:
+        last = twin.rough(wi, wo, _MOST)
+        if abs(last) < _TINY and abs(last) <= abs(more) / 10**_DIGITS:
+            return last  # what shrinks with every digit is 0
+        raise
 
 
 def _condition(twin: Twin, wi: FloatArray, wo: FloatArray, digits: int = 20) -> float:

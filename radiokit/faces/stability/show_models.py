@@ -59,6 +59,8 @@ def show_models(results: Sequence[ModelStability]) -> None:
                     f"{result.name}({shown_parameters(found.parameters)}): {found.worst:.3g} at {where}, "
                     f"{found.nonfinite} not finite, {len(found.undecided)} without a truth"
                 )
+                if found.undecided:
+                    write(f"  no truth: {found.undecided[0]}")
     held = sum(result.outcome is Outcome.HOLDS for result in results)
     pairs = sum(found.pairs for result in results for found in result.sets)
     write(f"{held} of {len(results)} models stay within {LIMIT:g} ulps × condition number, at {pairs} pairs")
