@@ -94,8 +94,7 @@ def test_what_transmits_is_seen_from_all_sides_and_near_the_critical_angle(rng):
 
 
 def test_extremes_come_from_the_declared_ranges():
-    found, refused = extremes(GGX)
-    assert refused == 0
+    found, _ = extremes(GGX)
     assert {f.alpha for f in found} >= {1e-4, 1.0}
     assert {f.eta for f in found} >= {1e-6, 1e6}
     assert any(f.eta is not None and f.alpha == 1e-4 for f in found)
