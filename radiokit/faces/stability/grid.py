@@ -94,8 +94,9 @@ def extremes(cls: type[BSDF]) -> tuple[tuple[BSDF, ...], int]:
     """Return the model at the ends of its parameters' declared ranges, and how many of them it refuses.
 
     From the first example of each choice that is no number (a distribution's name): one parameter after the
-    other at either end; all that one gives together at the low, or the high, end; of two parameters, all four corners. A parameter
-    that none of these give is moved in the first example that gives it. Examples are not repeated.
+    other at either end, and of two parameters all four corners. What an example gives together is also moved
+    together, to the low or the high ends. A parameter that none of these give is moved in the first example
+    that gives it. Examples are not repeated.
 
     >>> from radiokit.contracts.bsdf import REGISTRY
     >>> [f.exponent for f in extremes(REGISTRY.get("phong"))[0] if f.reflectance == 1]
