@@ -12,11 +12,13 @@ import numpy as np
 from radiokit.facts.errors import ParameterError, RadiokitError, suggestion
 
 __all__ = [
+    "Choice",
     "Parameter",
     "Spectrum",
     "at_wavelength",
     "build",
     "check_parameters",
+    "choice",
     "parameter",
     "parameters_of",
     "spectrum_length",
@@ -57,6 +59,19 @@ def parameter(interval: str, unit: str, meaning: str, *, spectral: bool = False,
     return dataclasses.field(metadata={"parameter": declared}, **field)
 
 
+@dataclass(frozen=True)
+class Choice:
+    """What a model says of a parameter that is one of a few words."""
+
+    options: tuple[str, ...]
+    meaning: str
+
+
+def choice(*options: str, meaning: str) -> Any:
+    """Declare a dataclass field that is one of ``options``; the first is the default."""
+    return dataclasses.field(default=options[0], metadata={"choice": Choice(options, meaning)})
+
+
 def parameters_of(cls: type) -> dict[str, Parameter]:
     """Return the declared parameters of a model's class, by name."""
     return {
@@ -67,7 +82,7 @@ def parameters_of(cls: type) -> dict[str, Parameter]:
 
 
 def check_parameters(model: Any) -> None:
-    """Turn every declared parameter of a frozen dataclass into a float, or a tuple of them; check its range.
+    """Turn every declared number of a frozen dataclass into a float, or a tuple of them; check all ranges.
 
     Raises
     ------
@@ -75,6 +90,12 @@ def check_parameters(model: Any) -> None:
         Naming the parameter, its value and what is allowed.
     """
     fields = {field.name: field for field in dataclasses.fields(model)}
+    for field in fields.values():
+        options = field.metadata["choice"].options if "choice" in field.metadata else None
+        if options and getattr(model, field.name) not in options:
+            *most, final = map(repr, options)
+            allowed = f"{', '.join(most)} or {final}"
+            raise ParameterError(field.name, getattr(model, field.name), allowed)
     lengths: dict[str, int] = {}
     for name, declared in parameters_of(type(model)).items():
         value = getattr(model, name)

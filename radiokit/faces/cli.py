@@ -94,7 +94,9 @@ def _show_validation(found: Any) -> None:
     rows = []
     for report in found.models:
         values = ", ".join(
-            f"{name}={value:g}" for name, value in report.parameters.items() if value is not None
+            f"{name}={value:g}" if isinstance(value, float) else f"{name}={value}"
+            for name, value in report.parameters.items()
+            if value is not None
         )
         for verdict in report:
             rows.append((report.subject, values, verdict.check, verdict.outcome, verdict.message))

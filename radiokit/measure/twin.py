@@ -157,11 +157,19 @@ class Twin:
         return [mpmath.mpf(float(number)) for number in numbers]
 
     def _real(self, *numbers: mpmath.mpf) -> mpmath.mpf:
-        """Evaluate at mpmath's present precision and drop the imaginary part, which must be 0."""
+        """Evaluate at mpmath's present precision and drop the imaginary part, which must be 0.
+
+        Where the formula divides by 0, the limit is meant: arguments that are 0 are moved by the precision,
+        so that only a limit gives the same value at two of them.
+        """
         import mpmath
 
-        symbols = (*self.arguments, *self.parameters)
-        value = mpmath.mpmathify(compiled(self.expression, symbols)(*numbers))
+        function = compiled(self.expression, (*self.arguments, *self.parameters))
+        try:
+            value = mpmath.mpmathify(function(*numbers))
+        except ZeroDivisionError:
+            beside = mpmath.mpf(10) ** -mpmath.mp.dps
+            value = mpmath.mpmathify(function(*(number or beside for number in numbers)))
         if isinstance(value, mpmath.mpc):
             if abs(value.imag) > mpmath.sqrt(mpmath.eps) * abs(value.real):
                 raise RadiokitError(f"{self.expression} is complex at {numbers}", values=numbers)
