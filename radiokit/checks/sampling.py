@@ -12,9 +12,12 @@ from radiokit.checks.parts import Part, flipped, mean_weight, parts
 from radiokit.checks.probes import channels, pairs, polar
 from radiokit.contracts.bsdf import BSDF, FloatArray
 from radiokit.facts.errors import NonFiniteError
+from radiokit.facts.estimate import Estimate
 from radiokit.facts.verdict import Evidence, Outcome, Verdict, Witness
 from radiokit.measure.quadrature import hemisphere
+from radiokit.measure.refraction import refracted, refracted_inverse, refracted_map
 from radiokit.measure.slope import find_lobe, gauss_legendre, mirrored, slope_inverse, slope_map
+from radiokit.measure.transmission import THIN, find_width, transmission
 
 __all__ = ["ANGLES_DEG", "LEVEL", "sampling"]
 
@@ -157,20 +160,15 @@ def _distribution(
         def density(w: FloatArray, piece: Part = piece) -> FloatArray:
             return np.asarray(piece.density(np.broadcast_to(up, w.shape), w), dtype=float)
 
-        aim = piece.aim(up)
-        width = None if piece.through else f.lobe_width()
-        if width is None:
-            width = find_lobe(density, aim).width
         try:
-            found = hemisphere(density, wo=aim, width=width, rtol=1e-7, max_evaluations=most)
+            found, cells, cell_of, spent = _expected(f, density, up, piece, most)
         except NonFiniteError as problem_found:
             return {}, ("the pdf is not finite", Witness(at, {"pdf": str(problem_found)}))
         total, error = total + float(found.value), error + float(found.error)
-        cells, spent = _cell_shares(density, aim, width)
         row["evaluations"] += found.evaluations + spent
         here = place[(place[:, 2] > 0) & ~special]
         expected.append(cells)
-        observed.append(np.bincount(_cell_of(here, aim, width), minlength=len(cells))[: len(cells)])
+        observed.append(np.bincount(cell_of(here), minlength=len(cells))[: len(cells)])
     row["pdf_integral"] = total
     if total - error > 1 + 1e-6:
         domain = "sphere" if f.transmissive else "hemisphere"
@@ -201,6 +199,43 @@ def _distribution(
         values = {"mean weight": columns[:, k].mean(), "∫ f |cosθi| dωi": exact[k], "p-value": p}
         return row, ("the weights' mean is not the albedo", Witness(at, values))
     return row, None
+
+
+def _expected(
+    f: BSDF, density: Any, up: FloatArray, piece: Part, most: int
+) -> tuple[Estimate, FloatArray, Any, int]:
+    """Return the pdf's integral over one hemisphere and over its cells, and which cell a direction is in.
+
+    Across an interface that bends light, cells lie in the coordinates of the facets that refract, and what no
+    facet refracts is a cell of its own.
+    """
+    eta = f.relative_index() ** (-1.0 if piece.below else 1.0)
+    if not piece.through or abs(eta - 1) < THIN:
+        aim = piece.aim(up)
+        width = None if piece.through else f.lobe_width()
+        if width is None:
+            width = find_lobe(density, aim).width
+        found = hemisphere(density, wo=aim, width=width, rtol=1e-7, max_evaluations=most)
+        cells, spent = _cell_shares(density, slope_map(aim, width, *_nodes())[:2], aim)
+        return found, cells, lambda w: _cell_of(*slope_inverse(aim, width, w)), spent
+
+    def below(w: FloatArray) -> FloatArray:
+        return np.asarray(density(flipped(w, True)))
+
+    width, spent = f.lobe_width(), 0
+    if width is None:
+        width, spent = find_width(below, up, eta)
+    found = transmission(below, wo=up, eta=eta, width=width, rtol=1e-7, max_evaluations=most)
+    cells, more = _cell_shares(below, refracted_map(up, eta, width, *_nodes())[:2], up)
+    rest = max(0.0, float(found.value) - float(cells.sum()))
+
+    def cell_of(w: FloatArray) -> Any:
+        w = flipped(w, True)
+        return np.where(
+            refracted(w, up, eta), _cell_of(*refracted_inverse(up, eta, width, w)), len(cells)
+        ).astype(int)
+
+    return found, np.append(cells, rest), cell_of, spent + more
 
 
 def _delta(
@@ -253,13 +288,18 @@ def _with_rest(expected: FloatArray, observed: Any, samples: int) -> tuple[Float
     return np.maximum(np.append(expected, lost), 0.0), np.append(observed, rest)
 
 
-def _cell_shares(density: Any, wo: FloatArray, width: float) -> tuple[FloatArray, int]:
-    """Integrate the pdf over every cell of the slope-space square, on both sides."""
-    x, wx = _panels(CELLS[0])
-    s, ws = _panels(CELLS[1])
-    grid_x, grid_s = np.meshgrid(x, s, indexing="ij")
-    wi, weight, _ = slope_map(wo, width, grid_x.ravel(), grid_s.ravel())
-    weight = weight * np.outer(wx, ws).ravel() / 2
+def _nodes() -> tuple[FloatArray, FloatArray]:
+    """Return x and s of the nodes in all cells of the square."""
+    x, s = np.meshgrid(_panels(CELLS[0])[0], _panels(CELLS[1])[0], indexing="ij")
+    return x.ravel(), s.ravel()
+
+
+def _cell_shares(
+    density: Any, nodes: tuple[FloatArray, FloatArray], wo: FloatArray
+) -> tuple[FloatArray, int]:
+    """Integrate the pdf over every cell of the square of coordinates, on both sides."""
+    wi, weight = nodes
+    weight = weight * np.outer(_panels(CELLS[0])[1], _panels(CELLS[1])[1]).ravel() / 2
     sides = []
     for points in (wi, mirrored(wi, wo)):
         mass = (density(points) * weight).reshape(CELLS[0], NODES, CELLS[1], NODES)
@@ -272,8 +312,7 @@ def _panels(count: int) -> tuple[FloatArray, FloatArray]:
     return ((np.arange(count)[:, None] + x) / count).ravel(), np.tile(w / count, count)
 
 
-def _cell_of(wi: FloatArray, wo: FloatArray, width: float) -> Any:
-    x, s, far = slope_inverse(wo, width, wi)
+def _cell_of(x: FloatArray, s: FloatArray, far: FloatArray) -> Any:
     i = np.minimum((x * CELLS[0]).astype(int), CELLS[0] - 1)
     j = np.minimum((s * CELLS[1]).astype(int), CELLS[1] - 1)
     return (far.astype(int) * CELLS[0] + i) * CELLS[1] + j
