@@ -142,6 +142,22 @@ ROWS = (
             ),
         ),
     ),
+    Row(
+        "ggx_multiscatter",
+        ordinary=({}, {"alpha": 1.0, "f0": 0.5}, {"alpha": 0.6, "eta": 0.2, "k": 3.9}),
+        hard=({"alpha": 1.0}, {"alpha": 0.1}, {"alpha": 1e-3}),
+        wrong=(
+            out_of_range("alpha", 1e-4, "[1e-3, 1]"),
+            out_of_range("f0", 1.5, "[0, 1]", spectral=True),
+            ({"k": 1.5}, "eta = None is not allowed: it must be given, as k is: an index has both parts"),
+            (
+                {"eta": 0.2, "k": 3.9, "f0": 0.9},
+                "f0 = 0.9 is not allowed: it must be left out, as eta and k are given: "
+                "either says what facets do",
+            ),
+        ),
+        albedos=tuple(({"alpha": a}, t, 1.0) for a in (1e-3, 0.03, 0.3, 1.0) for t in (0.0, 60.0, 89.0)),
+    ),
 )
 
 

@@ -38,8 +38,8 @@ SOURCE = Source(
     title="Microfacet Models for Refraction through Rough Surfaces. Eurographics Symposium on Rendering",
     doi="10.2312/EGWR/EGSR07/195-206",
     equation="13 and 16 (half vectors), 20 and 21 (reflection and transmission), 22 (F), 23 (separable G), "
-    "25 and 33 (D). Equation 16 points into the rarer medium; here it is turned to the side of the normal, as "
-    "the D of equations 25 and 33 asks for",
+    "25 and 33 (D). Equation 16 points into the rarer medium; here it is turned to the side of the normal, "
+    "as the D of equations 25 and 33 asks for",
 )
 
 LEAST_STEP = 1e-4
@@ -150,10 +150,10 @@ class _Facets:
     alpha: float
 
     def density(self, h: FloatArray) -> FloatArray:
-        return np.asarray(run(self.distribution, h.T, (self.alpha, self.alpha)))
+        return np.asarray(run(self.distribution, list(h.T), (self.alpha, self.alpha)))
 
     def masking(self, w: FloatArray, h: FloatArray) -> FloatArray:
-        return np.asarray(masking(np.abs(w[:, 2]), run(self.area, w.T, (self.alpha, self.alpha))))
+        return np.asarray(masking(np.abs(w[:, 2]), run(self.area, list(w.T), (self.alpha, self.alpha))))
 
     def shadowing(self, wi: FloatArray, wo: FloatArray, h: FloatArray) -> FloatArray:
         return self.masking(wi, h) * self.masking(wo, h)

@@ -101,7 +101,7 @@ def _limits(
 
 def refracted_inverse(
     wo: FloatArray, eta: float, width: float, wi: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+) -> tuple[FloatArray, FloatArray, npt.NDArray[np.bool_]]:
     """Invert ``refracted_map``: return x, s, and whether ``wi`` (N, 3) lies on the mirrored side.
 
     By tables, whose nodes are exact and lie on the edges of a dozen cells. What no facet refracts gets the
