@@ -145,7 +145,7 @@ ROWS = (
     Row(
         "ggx_multiscatter",
         ordinary=({}, {"alpha": 1.0, "f0": 0.5}, {"alpha": 0.6, "eta": 0.2, "k": 3.9}),
-        hard=({"alpha": 1.0}, {"alpha": 0.1}, {"alpha": 1e-3}),
+        hard=({"alpha": 1.0}, {"alpha": 1e-3}),
         wrong=(
             out_of_range("alpha", 1e-4, "[1e-3, 1]"),
             out_of_range("f0", 1.5, "[0, 1]", spectral=True),
@@ -393,36 +393,47 @@ def test_machine_code_gives_the_bits_that_numpy_gives(row, rng):
         np.testing.assert_array_equal(one, other)
 
 
+def spectral_sets(row: Row) -> dict[tuple[str, ...], dict[str, Any]]:
+    """Return a parameter set for each choice of the spectral parameters that the ordinary sets give."""
+    declared = parameters_of(type(bsdf(row.name)))
+    found = {}
+    for parameters in row.ordinary:
+        f = bsdf(row.name, **parameters)
+        names = tuple(n for n in declared if declared[n].spectral and getattr(f, n) is not None)
+        found.setdefault(names, parameters)
+    given = {name for names in found for name in names}
+    assert given == {name for name in declared if declared[name].spectral}
+    return {names: parameters for names, parameters in found.items() if names}
+
+
 @models
 def test_a_spectrum_is_its_wavelengths(row, rng):
     """Every parameter that may be a spectrum is one, of three wavelengths and of one."""
-    declared = parameters_of(type(bsdf(row.name)))
-    names = [name for name in declared if declared[name].spectral]
-    given = (p for p in row.ordinary if all(getattr(bsdf(row.name, **p), name) is not None for name in names))
-    single = bsdf(row.name, **next(given))
-    for factors in ([1.0, 0.9, 0.5], [0.75]) if names else ():
-        spectra = {name: getattr(single, name) * np.array(factors) for name in names}
-        f = dataclasses.replace(single, **spectra)
-        assert hash(f) == hash(dataclasses.replace(f))
-        wi, wo = hard_pairs(single, rng)
-        u = rng.random((len(wo), f.dimensions))
-        found = f.evaluate(wi, wo), f.pdf(wi, wo), *f.sample(u, wo)
-        for k in range(len(factors)):
-            one = f.wavelength(k)
-            assert [getattr(one, name) for name in names] == [getattr(f, name)[k] for name in names]
-            np.testing.assert_array_equal(found[0][:, k], one.evaluate(wi, wo))
-            np.testing.assert_array_equal(found[1], one.pdf(wi, wo))
-            np.testing.assert_array_equal(found[2], one.sample(u, wo)[0])
-            np.testing.assert_array_equal(found[3][:, k], one.sample(u, wo)[1])
-        sky = spherical_to_cartesian(1.0, 0.3)
-        total = directional_albedo(f, sky, rtol=1e-6)
-        parts = [directional_albedo(f.wavelength(k), sky, rtol=1e-6) for k in range(len(factors))]
-        assert np.shape(total.value) == (len(factors),)
-        for k, part in enumerate(parts):
-            assert abs(total.value[k] - part.value) <= total.error[k] + part.error
-        sampled = albedo(f, sky, method="mc", samples=2000, rng=rng)
-        assert np.shape(sampled.value) == (len(factors),)
-        assert f.symbolic().expression == single.symbolic().expression
+    for names, parameters in spectral_sets(row).items():
+        single = bsdf(row.name, **parameters)
+        for factors in ([1.0, 0.9, 0.5], [0.75]):
+            spectra = {name: getattr(single, name) * np.array(factors) for name in names}
+            f = dataclasses.replace(single, **spectra)
+            assert hash(f) == hash(dataclasses.replace(f))
+            wi, wo = hard_pairs(single, rng)
+            u = rng.random((len(wo), f.dimensions))
+            found = f.evaluate(wi, wo), f.pdf(wi, wo), *f.sample(u, wo)
+            for k in range(len(factors)):
+                one = f.wavelength(k)
+                assert [getattr(one, name) for name in names] == [getattr(f, name)[k] for name in names]
+                np.testing.assert_array_equal(found[0][:, k], one.evaluate(wi, wo))
+                np.testing.assert_array_equal(found[1], one.pdf(wi, wo))
+                np.testing.assert_array_equal(found[2], one.sample(u, wo)[0])
+                np.testing.assert_array_equal(found[3][:, k], one.sample(u, wo)[1])
+            sky = spherical_to_cartesian(1.0, 0.3)
+            total = directional_albedo(f, sky, rtol=1e-6)
+            parts = [directional_albedo(f.wavelength(k), sky, rtol=1e-6) for k in range(len(factors))]
+            assert np.shape(total.value) == (len(factors),)
+            for k, part in enumerate(parts):
+                assert abs(total.value[k] - part.value) <= total.error[k] + part.error
+            sampled = albedo(f, sky, method="mc", samples=2000, rng=rng)
+            assert np.shape(sampled.value) == (len(factors),)
+            assert f.symbolic().expression == single.symbolic().expression
 
 
 def test_a_spectrum_out_of_range_or_of_another_length_is_named():

@@ -39,29 +39,30 @@ SOURCE = Source(
     year=2017,
     title="Revisiting Physically Based Shading at Imageworks. SIGGRAPH Course: Physically Based Shading in "
     "Theory and Practice",
-    equation="f_ms = (1 − E(μi))(1 − E(μo)) / (π (1 − E_avg)), of Kelemen & Szirmay-Kalos (2001), and its colour "
-    "F_ms = F_avg E_avg / (1 − F_avg (1 − E_avg)). Hill (2018), A Multi-Faceted Exploration, part 2, has F_avg² "
-    "in it, for two bounces or more; here it stands as published",
+    equation="f_ms = (1 − E(μi))(1 − E(μo)) / (π (1 − E_avg)), of Kelemen & Szirmay-Kalos (2001), and its "
+    "colour F_ms = F_avg E_avg / (1 − F_avg (1 − E_avg)). Hill (2018), A Multi-Faceted Exploration, part 2, "
+    "has F_avg² in it, for two bounces or more; here it stands as published",
 )
 
 _NODES, _RULE = 96, (208, 152)
-_CHOP = 1e-13  # coefficients of 1 − E whose magnitudes sum to less are left out
+_CHOP = 1e-12  # coefficients whose magnitudes sum to less are left out
 
 
 @kernel
 def _loss(mu: Any, alpha: Any, per_span: Any, *series: Any) -> Any:
-    """Return 1 − E(μ) [1], a Chebyshev series in the fourth root of asinh(μ/α).
+    """Return 1 − E(μ) [1], a Chebyshev series in the fourth root of asinh(μ/α) over √(1 + μ²/α²).
 
     1 − E is a function of μ/α for narrow lobes, and as μ → 0 it goes like μ log μ, which the root flattens.
     """
     m = mu / alpha
-    x = np.sqrt(np.sqrt(log1p(m + m * m / (1.0 + np.sqrt(1.0 + m * m))) * per_span))
+    steep = np.sqrt(1.0 + m * m)
+    x = np.sqrt(np.sqrt(log1p(m + m * m / (1.0 + steep)) * per_span))
     twice = 4.0 * x - 2.0
     one, two = 0.0 * mu, 0.0 * mu
     for k in range(len(series) - 1, 0, -1):
         one, two = series[k] + twice * one - two, one
     loss = series[0] + 0.5 * twice * one - two
-    return select(loss > 0.0, loss, 0.0)
+    return select(loss > 0.0, loss / steep, 0.0)
 
 
 @kernel
@@ -136,6 +137,11 @@ def _kernels(mirror: Kernel) -> tuple[Kernel, Kernel, Kernel]:
 _PERFECT, _BY_F0, _METAL = _kernels(_perfect), _kernels(_schlick), _kernels(conductor_kernel)
 
 
+def _per_span(alpha: float) -> float:
+    """Return 1/asinh(1/α), which makes the series' variable 1 at μ = 1."""
+    return float(1.0 / np.arcsinh(1.0 / alpha))
+
+
 @lru_cache(maxsize=64)
 def _table(alpha: float) -> tuple[tuple[float, ...], float]:
     """Return the series of 1 − E, whose last digits are those of E, and 1 − E_avg.
@@ -150,35 +156,37 @@ def _table(alpha: float) -> tuple[tuple[float, ...], float]:
             wo = np.array([np.sqrt((1.0 - mu) * (1.0 + mu)), 0.0, mu])
             wi, weight = slope_rule(wo, alpha, _RULE, symmetric=True)
             lost[k] = 1.0 - np.sum(_single(*wi.T, *wo, alpha) * wi[:, 2] * weight)
+    lost *= np.cosh(span * (0.5 + 0.5 * t) ** 4)
     series = np.polynomial.chebyshev.chebfit(t, lost, _NODES - 1)
     tail = np.cumsum(np.abs(series[::-1]))[::-1]
     series = series[: int(np.argmax(tail < _CHOP)) or _NODES]
     x, weight = gauss_legendre(200)
     mu, slope = alpha * np.sinh(span * x**4), alpha * np.cosh(span * x**4) * 4.0 * span * x**3
-    mean = 2.0 * np.sum(weight * slope * mu * _loss(mu, alpha, 1.0 / span, *series.tolist()))
+    mean = 2.0 * np.sum(weight * slope * mu * _loss(mu, alpha, _per_span(alpha), *series.tolist()))
     return tuple(series.tolist()), float(mean)
 
 
 @lru_cache(maxsize=64)
 def _loss_symbolic(alpha: float) -> Any:
-    """Return 1 − E as a SymPy function of μ and of two factors, of the even and the odd terms of its series.
+    """Return 1 − E as a SymPy function of μ, of 1/asinh(1/α), and of two factors that are 1.
 
-    The factors are 1. They let a condition number count what the rounding of the series does.
+    They are those of the even and the odd terms of the series: a condition number then counts what the
+    rounding of the series and of its argument does.
     """
     from sympy.utilities.lambdify import implemented_function
 
     series, _ = _table(alpha)
 
-    def series_sum(mu: Any, even: Any, odd: Any) -> Any:
+    def series_sum(mu: Any, per_span: Any, even: Any, odd: Any) -> Any:
         import mpmath
 
         width = mpmath.mpf(alpha)
-        t = 2 * mpmath.root(mpmath.asinh(mu / width) / mpmath.asinh(1 / width), 4) - 1
+        t = 2 * mpmath.root(mpmath.asinh(mu / width) * per_span, 4) - 1
         total, before, term = even * series[0], mpmath.mpf(1), t
         for k, coefficient in enumerate(series[1:], start=1):
             total += (odd if k % 2 else even) * coefficient * term
             before, term = term, 2 * t * term - before
-        return total
+        return total / mpmath.sqrt(1 + (mu / width) ** 2)
 
     return implemented_function("L", series_sum)
 
@@ -241,14 +249,14 @@ class GGXMultiscatter(ScalarBSDF):
 
         from radiokit.measure.twin import DIRECTION_SYMBOLS
 
-        alpha, eta, k, f0, mean, even, odd, tint = sympy.symbols(
-            "alpha eta k f0 l_avg even odd f_ms", positive=True
-        )
+        alpha, eta, k, f0, mean, tint = sympy.symbols("alpha eta k f0 l_avg f_ms", positive=True)
+        series = sympy.symbols("s even odd", positive=True)
         wi, wo = DIRECTION_SYMBOLS[:3], DIRECTION_SYMBOLS[3:]
         half = [i + o for i, o in zip(wi, wo, strict=True)]
         cosine = sympy.sqrt((1 + paper.dot_symbolic(wi, wo)) / 2)  # of half the angle between them
         loss = _loss_symbolic(self.alpha)
-        values: dict[Any, Any] = {alpha: self.alpha, mean: self._lost(), even: 1.0, odd: 1.0}
+        values: dict[Any, Any] = {alpha: self.alpha, mean: self._lost()}
+        values |= dict(zip(series, (_per_span(self.alpha), 1.0, 1.0), strict=True))
         reflectance, colour = sympy.S.One, sympy.S.One
         if self.f0 is not None:
             reflectance = fresnel.schlick_symbolic(cosine, f0)
@@ -260,13 +268,13 @@ class GGXMultiscatter(ScalarBSDF):
             values |= {eta: self.eta, k: self.k, tint: self._tint()}
         smith = [paper.ggx_lambda_symbolic(w, alpha, alpha) for w in (wi, wo)]
         single = paper.ggx_d_symbolic(half, alpha, alpha) * paper.correlated_symbolic(*smith)
-        multiple = loss(wi[2], even, odd) * loss(wo[2], even, odd) / (sympy.pi * mean)
+        multiple = loss(wi[2], *series) * loss(wo[2], *series) / (sympy.pi * mean)
         return Twin(reflectance * single / (4 * wi[2] * wo[2]) + colour * multiple, values)
 
     def kernels(self) -> Kernels:
         """Return the kernels for the facets' reflectance, and the series of 1 − E among their constants."""
         series, mean = _table(self.alpha)
-        shape = (self._tint(), 1.0 / (np.pi * mean), float(1.0 / np.arcsinh(1.0 / self.alpha)), *series)
+        shape = (self._tint(), 1.0 / (np.pi * mean), _per_span(self.alpha), *series)
         if self.f0 is not None:
             return Kernels(*_BY_F0, (self.alpha, self.f0, 0.0, *shape))
         if self.eta is not None and self.k is not None:

@@ -6,6 +6,7 @@ import time
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from radiokit.checks.delta import in_lobe, lobe_means
 from radiokit.checks.parts import Part, flipped, mean_weight, parts
@@ -312,7 +313,7 @@ def _panels(count: int) -> tuple[FloatArray, FloatArray]:
     return ((np.arange(count)[:, None] + x) / count).ravel(), np.tile(w / count, count)
 
 
-def _cell_of(x: FloatArray, s: FloatArray, far: FloatArray) -> Any:
+def _cell_of(x: FloatArray, s: FloatArray, far: npt.NDArray[Any]) -> Any:
     i = np.minimum((x * CELLS[0]).astype(int), CELLS[0] - 1)
     j = np.minimum((s * CELLS[1]).astype(int), CELLS[1] - 1)
     return (far.astype(int) * CELLS[0] + i) * CELLS[1] + j
