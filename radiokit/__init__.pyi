@@ -8,10 +8,17 @@ from .contracts.bsdf import Claims as Claims
 from .contracts.bsdf import DeltaLobe as DeltaLobe
 from .contracts.bsdf import bsdf as bsdf
 from .contracts.bsdf import list_bsdfs as list_bsdfs
+from .contracts.clamped import clamped as clamped
+from .contracts.coated import coated as coated
 from .contracts.emitter import Emitter as Emitter
 from .contracts.emitter import emitter as emitter
 from .contracts.emitter import list_emitters as list_emitters
+from .contracts.mixture import mixture as mixture
+from .contracts.mixture import scaled as scaled
 from .contracts.parameters import parameter as parameter
+from .contracts.scalar import Kernels as Kernels
+from .contracts.scalar import ScalarBSDF as ScalarBSDF
+from .faces.modeltable import models_table as models_table
 from .faces.plots.lobe import save_lobe as save_lobe
 from .faces.plots.lobe import show_lobe as show_lobe
 from .facts import directions as directions
@@ -27,6 +34,8 @@ from .measure import montecarlo as montecarlo
 from .measure import quadrature as quadrature
 from .measure import statistics as statistics
 from .measure import warps as warps
+from .measure.kernels import kernel as kernel
+from .measure.kernels import select as select
 from .measure.twin import Twin as Twin
 from .physics import fresnel as fresnel
 from .worlds.cases.catalogue import case as case

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
+from radiokit.checks.cells import cells_of
 from radiokit.checks.delta import in_lobe, lobe_means
-from radiokit.checks.parts import Part, flipped, mean_weight, parts
+from radiokit.checks.parts import flipped, mean_weight, parts
 from radiokit.checks.probes import channels, pairs, polar
 from radiokit.contracts.bsdf import BSDF, FloatArray
 from radiokit.facts.errors import NonFiniteError
 from radiokit.facts.verdict import Evidence, Outcome, Verdict, Witness
-from radiokit.measure.quadrature import hemisphere
-from radiokit.measure.slope import find_lobe, gauss_legendre, mirrored, slope_inverse, slope_map, turned
 
 __all__ = ["ANGLES_DEG", "LEVEL", "sampling"]
 
@@ -27,7 +25,6 @@ LEVEL = 1e-6
 P_VALUES = ("p_chi_square", "p_albedo", "p_delta")
 """The tests at each direction; all three share the level, though few models have delta lobes."""
 
-CELLS = (12, 12)  # along radius and azimuth, on each side of the plane of incidence
 NODES = 8, 32  # Gauss-Legendre nodes along each side of a cell, and of one that a narrow ridge may cross
 MOST = 400_000  # evaluations that one integral may cost
 WEIGHT = 1e-6  # relative disagreement of a weight that is let pass
@@ -156,25 +153,15 @@ def _distribution(
     row["evaluations"] = 0
     most = MOST if len(pieces) == 1 else MOST // 4  # light that passes has kinks, and the samples err more
     total, error = 0.0, 0.0
-    cells, observed = [], []
-    for piece, place in zip(pieces, places, strict=True):
-        aim, retro = piece.aim(up), False
-        width = None if piece.through else f.lobe_width()
-        if width is None:
-            lobe = find_lobe(_density_of(piece, up), aim)
-            width, retro = lobe.width, lobe.retro
-        density = _density_of(piece, up, retro)
+    regions, observed = [cells_of(f, piece, up) for piece in pieces], []
+    for region, place in zip(regions, places, strict=True):
         try:
-            found = hemisphere(density, wo=aim, width=width, rtol=1e-7, max_evaluations=most)
+            found = region.integral(most)
         except NonFiniteError as problem_found:
             return {}, ("the pdf is not finite", Witness(at, {"pdf": str(problem_found)}))
         total, error = total + float(found.value), error + float(found.error)
         row["evaluations"] += found.evaluations
-        cells.append((density, aim, width))
-        here = place[(place[:, 2] > 0) & ~special]
-        here = turned(here) if retro else here
-        count = 2 * CELLS[0] * CELLS[1]
-        observed.append(np.bincount(_cell_of(here, aim, width), minlength=count)[:count])
+        observed.append(region.counts(place[(place[:, 2] > 0) & ~special]))
     row["pdf_integral"] = total
     if total - error > 1 + 1e-6:
         domain = "sphere" if f.transmissive else "hemisphere"
@@ -183,7 +170,7 @@ def _distribution(
             Witness(at, {"∫ pdf dω": total, "±": error}),
         )
     for nodes in NODES:
-        expected = [_cell_shares(*region, nodes) for region in cells]
+        expected = [region.shares(nodes) for region in regions]
         row["evaluations"] += sum(spent for _, spent in expected)
         shares, counts = _with_rest(
             np.concatenate([share for share, _ in expected]), np.concatenate(observed), samples
@@ -262,39 +249,3 @@ def _with_rest(expected: FloatArray, observed: Any, samples: int) -> tuple[Float
     if lost < 1e-6 and rest == 0:
         return np.maximum(expected / expected.sum(), 0.0), observed
     return np.maximum(np.append(expected, lost), 0.0), np.append(observed, rest)
-
-
-def _density_of(piece: Part, up: FloatArray, retro: bool = False) -> Callable[[FloatArray], FloatArray]:
-    """Return the pdf for ``up``; that of a lobe about wo as it looks from the other side."""
-
-    def density(w: FloatArray) -> FloatArray:
-        w = turned(w) if retro else w
-        return np.asarray(piece.density(np.broadcast_to(up, w.shape), w), dtype=float)
-
-    return density
-
-
-def _cell_shares(density: Any, wo: FloatArray, width: float, nodes: int) -> tuple[FloatArray, int]:
-    """Integrate the pdf over every cell of the slope-space square, on both sides."""
-    x, wx = _panels(CELLS[0], nodes)
-    s, ws = _panels(CELLS[1], nodes)
-    grid_x, grid_s = np.meshgrid(x, s, indexing="ij")
-    wi, weight, _ = slope_map(wo, width, grid_x.ravel(), grid_s.ravel())
-    weight = weight * np.outer(wx, ws).ravel() / 2
-    sides = []
-    for points in (wi, mirrored(wi, wo)):
-        mass = (density(points) * weight).reshape(CELLS[0], nodes, CELLS[1], nodes)
-        sides.append(mass.sum(axis=(1, 3)).ravel())
-    return np.concatenate(sides), 2 * len(wi)
-
-
-def _panels(count: int, nodes: int) -> tuple[FloatArray, FloatArray]:
-    x, w = gauss_legendre(nodes)
-    return ((np.arange(count)[:, None] + x) / count).ravel(), np.tile(w / count, count)
-
-
-def _cell_of(wi: FloatArray, wo: FloatArray, width: float) -> Any:
-    x, s, far = slope_inverse(wo, width, wi)
-    i = np.minimum((x * CELLS[0]).astype(int), CELLS[0] - 1)
-    j = np.minimum((s * CELLS[1]).astype(int), CELLS[1] - 1)
-    return (far.astype(int) * CELLS[0] + i) * CELLS[1] + j

@@ -35,6 +35,7 @@ class Clamped(BSDF):
     """
 
     name = "clamped"
+    isotropic: ClassVar[bool] = True  # what its parts say, for an instance
     SOURCE: ClassVar[Source] = OWN
 
     base: BSDF

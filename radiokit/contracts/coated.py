@@ -49,6 +49,7 @@ class Coated(BSDF):
     """
 
     name = "coated"
+    isotropic: ClassVar[bool] = True  # what its parts say, for an instance
     SOURCE: ClassVar[Source] = Source(
         authors="Kelemen, Szirmay-Kalos",
         year=2001,

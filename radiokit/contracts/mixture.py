@@ -54,6 +54,7 @@ class Mixture(BSDF):
     """
 
     name = "mixture"
+    isotropic: ClassVar[bool] = True  # what its parts say, for an instance
     SOURCE: ClassVar[Source] = OWN
 
     weights: tuple[Spectrum, ...]

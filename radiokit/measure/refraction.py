@@ -7,9 +7,12 @@ import numpy.typing as npt
 
 from radiokit.measure.slope import gauss_legendre, mirrored
 
-__all__ = ["panels", "refracted", "refracted_map", "refracted_rule", "rest_rule"]
+__all__ = ["panels", "refracted", "refracted_inverse", "refracted_map", "refracted_rule", "rest_rule"]
 
 FloatArray = npt.NDArray[np.float64]
+
+TABLE = 12 * (1 << 10)
+"""Intervals of the tables by which the map is inverted."""
 
 
 def refracted_map(
@@ -56,23 +59,8 @@ def refracted_map(
     beyond = eta < 1 and sin_o > eta  # the mean surface reflects totally
     phi, cos_sigma, w_phi = _azimuths(cos_o, sin_o, eta, s)
     cos_phi, sin_phi = np.cos(phi), np.sin(phi)
-    along = sin_o * cos_phi
-    if beyond:
-        margin = (sin_o - eta) * (sin_o + eta)
-        root = eta * cos_sigma
-        steep = margin / ((along + root) * cos_o)
-        near = margin / ((along + root) * (cos_o + least))
-        start = steep / (1 + np.sqrt(1 + steep * steep))
-        far = (along + root) / (cos_o + least)
-        share, rest, slope = _leaning(x)
-    else:
-        margin = (eta - sin_o) * (eta + sin_o) if eta < 1 else cos_o * cos_o
-        root = np.sqrt(along * along + margin)
-        both = np.abs(along) + root
-        less, more = margin / (both * (cos_o + least)), both / (cos_o + least)
-        near, far = -np.where(along < 0, more, less), np.where(along < 0, less, more)
-        start = np.zeros_like(phi)
-        share, rest, slope = x * (2 - x), (1 - x) ** 2, 2 * (1 - x)
+    near, far, start = _limits(cos_o, sin_o, eta, cos_phi, cos_sigma)
+    share, rest, slope = _leaning(x) if beyond else (x * (2 - x), (1 - x) ** 2, 2 * (1 - x))
     end = np.minimum(far, 1.0)
     half = width / 2
     low, high = np.arcsinh(start / half), np.arcsinh(end / half)
@@ -91,6 +79,58 @@ def refracted_map(
     weight = np.divide(kappa * kappa, eta * bent, out=np.zeros_like(bent), where=bent > 0)
     weight = weight * (4 * q / (square * square)) * (half * np.cosh(t) * span * slope) * (2 * w_phi)
     return wi, weight, tilt / np.maximum(lift, np.finfo(float).tiny)
+
+
+def _limits(
+    cos_o: float, sin_o: float, eta: float, cos_phi: FloatArray, cos_sigma: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return q₋ and q₊, and the q at which the facets that refract downwards begin."""
+    least = float(np.sqrt(max(0.0, (1 - eta) * (1 + eta))))
+    along = sin_o * cos_phi
+    if eta < 1 and sin_o > eta:
+        margin = (sin_o - eta) * (sin_o + eta)
+        total = along + eta * cos_sigma
+        steep = margin / (total * cos_o)
+        near, far = margin / (total * (cos_o + least)), total / (cos_o + least)
+        return near, far, steep / (1 + np.sqrt(1 + steep * steep))
+    margin = (eta - sin_o) * (eta + sin_o) if eta < 1 else cos_o * cos_o
+    both = np.abs(along) + np.sqrt(along * along + margin)
+    less, more = margin / (both * (cos_o + least)), both / (cos_o + least)
+    return -np.where(along < 0, more, less), np.where(along < 0, less, more), np.zeros_like(cos_phi)
+
+
+def refracted_inverse(
+    wo: FloatArray, eta: float, width: float, wi: FloatArray
+) -> tuple[FloatArray, FloatArray, npt.NDArray[np.bool_]]:
+    """Invert ``refracted_map``: return x, s, and whether ``wi`` (N, 3) lies on the mirrored side.
+
+    By tables, whose nodes are exact and lie on the edges of a dozen cells. What no facet refracts gets the
+    nearest x and s: see ``refracted``.
+
+    >>> wo = np.array([0.6, 0.0, 0.8])
+    >>> wi, _, _ = refracted_map(wo, 1.5, 0.3, np.array([0.25]), np.array([0.75]))
+    >>> x, s, far = refracted_inverse(wo, 1.5, 0.3, wi)
+    >>> round(float(x[0]), 6), round(float(s[0]), 6), bool(far[0])
+    (0.25, 0.75, False)
+    """
+    cos_o, sin_o = float(wo[2]), float(np.hypot(wo[0], wo[1]))
+    h = wo + eta * wi
+    h = np.where(h[:, 2:] < 0, -h, h)
+    c, d = (1.0, 0.0) if sin_o == 0 else (wo[0] / sin_o, wo[1] / sin_o)
+    along, across = c * h[:, 0] + d * h[:, 1], c * h[:, 1] - d * h[:, 0]
+    radius = np.hypot(along, across)
+    q = radius / (h[:, 2] + np.hypot(radius, h[:, 2]))
+    table = np.linspace(0.0, 1.0, TABLE + 1)
+    phi = np.arctan2(np.abs(across), along)
+    s = np.interp(phi, _azimuths(cos_o, sin_o, eta, table)[0], table)
+    sine = np.sin(phi) * (sin_o / eta)
+    _, far, start = _limits(cos_o, sin_o, eta, np.cos(phi), np.sqrt(np.clip(1 - sine * sine, 0.0, 1.0)))
+    low, high = np.arcsinh(2 * start / width), np.arcsinh(2 * np.minimum(far, 1.0) / width)
+    span = np.maximum(high - low, np.finfo(float).tiny)
+    share = np.clip((np.arcsinh(2 * q / width) - low) / span, 0.0, 1.0)
+    beyond = eta < 1 and sin_o > eta
+    x = np.interp(share, _leaning(table)[0], table) if beyond else share / (1 + np.sqrt(1 - share))
+    return x, s, across < 0
 
 
 def _turned_to(wo: FloatArray, along: FloatArray, across: FloatArray, upright: FloatArray) -> FloatArray:

@@ -18,7 +18,7 @@ from radiokit.measure.quadrature import SCAN, STEEPNESS, WIDTHS, hemisphere, mis
 from radiokit.measure.refraction import refracted, refracted_map, refracted_rule, rest_rule
 from radiokit.measure.slope import PROBE_WIDTH, mirrored, slope_map
 
-__all__ = ["sphere", "transmission"]
+__all__ = ["THIN", "find_width", "sphere", "transmission"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -115,7 +115,7 @@ def transmission(
 
     spent = 0
     if width is None:
-        width, spent = _find_width(below, direction, eta)
+        width, spent = find_width(below, direction, eta)
     budget = max_evaluations - spent
     aside = _aside(below, direction, eta, LOOK_SMOOTH if smooth or budget < 8 * SCAN else SCAN)
     spent += aside.points
@@ -243,7 +243,7 @@ def _lobe_scan(below: Integrand, wo: FloatArray, eta: float, width: float) -> _S
     return _Scan(terms.mean(axis=0), terms.std(axis=0) / np.sqrt(SCAN), SCAN)
 
 
-def _find_width(below: Integrand, wo: FloatArray, eta: float) -> tuple[float, int]:
+def find_width(below: Integrand, wo: FloatArray, eta: float) -> tuple[float, int]:
     """Return the median slope of facets under the integrand's own mass, and the evaluations."""
     wi, weight, slope = refracted_rule(wo, eta, PROBE_WIDTH, PROBE)
     value = np.abs(np.asarray(below(wi), dtype=float).reshape(len(wi), -1)).sum(axis=1)
