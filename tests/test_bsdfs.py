@@ -661,7 +661,8 @@ def test_a_model_without_a_row_would_be_noticed():
 def test_the_kernel_agrees_with_its_twin(name, parameters, rng):
     f = bsdf(name, **parameters)
     wi, wo = hard_pairs(f, rng)
-    every = slice(None, None, 3 if f.transmissive else 1)  # a third of more pairs, all four sides among them
+    # A third of the pairs, for each set another; ``radiokit stability --models`` takes all of them and more.
+    every = slice(rng.integers(3), None, 3)
     assert worst_ulps(f.evaluate, f.symbolic(), wi[every], wo[every]) <= 8
 
 

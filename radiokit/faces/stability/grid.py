@@ -14,7 +14,16 @@ from radiokit.facts.directions import reflect, refract, spherical_to_cartesian, 
 from radiokit.facts.errors import RadiokitError
 from radiokit.measure.twin import Twin, scaled_ulps
 
-__all__ = ["edge_pairs", "examples", "extremes", "hard_pairs", "parameter_ends", "worst_ulps"]
+__all__ = [
+    "DARK",
+    "edge_pairs",
+    "examples",
+    "extremes",
+    "hard_pairs",
+    "parameter_ends",
+    "value_ulps",
+    "worst_ulps",
+]
 
 ANGLES = np.radians([0.0, 1e-7, 30.0, 60.0, 89.0, 89.9999])
 """Polar angles of both directions: normal and nearly so, ordinary, grazing."""
@@ -78,11 +87,27 @@ def edge_pairs(f: BSDF) -> tuple[FloatArray, FloatArray]:
     return _sides(f, found, _refracted(f, [0.5, *_critical(f, 1e-9), *_critical(f, 1e-3)], [near]))
 
 
+DARK = 1e-280
+"""Values below this [sr⁻¹] count as 0: an exponential in them may have underflowed, below e⁻⁷⁰⁸."""
+
+
 def worst_ulps(kernel: Any, twin: Twin, wi: FloatArray, wo: FloatArray) -> float:
     """Return the largest error of ``kernel(wi, wo)``, in ulps over max(1, condition number)."""
     exact = [twin.evaluate(*pair) for pair in zip(wi, wo, strict=True)]
     condition = [twin.condition(*pair) for pair in zip(wi, wo, strict=True)]
-    return float(np.max(scaled_ulps(kernel(wi, wo), exact, condition)))
+    errors = [value_ulps(*row) for row in zip(kernel(wi, wo), exact, condition, strict=True)]
+    return max(errors)
+
+
+def value_ulps(value: float, exact: Any, condition: float = 1.0) -> float:
+    """Return the error of f [sr⁻¹] in ulps over max(1, condition); 0 where both are darker than ``DARK``.
+
+    >>> value_ulps(0.0, 1e-300, 1.0), value_ulps(0.5, 0.5, 1.0)
+    (0.0, 0.0)
+    """
+    if abs(value) < DARK and abs(exact) < DARK:
+        return 0.0
+    return float(scaled_ulps(value, exact, condition))
 
 
 def examples(cls: type[BSDF]) -> tuple[BSDF, ...]:

@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 
 from radiokit.contracts.bsdf import BSDF, REGISTRY, FloatArray
-from radiokit.faces.stability.grid import edge_pairs, examples, extremes, hard_pairs
+from radiokit.faces.stability.grid import DARK, edge_pairs, examples, extremes, hard_pairs, value_ulps
 from radiokit.faces.stability.measure import LIMIT
 from radiokit.faces.workers import SerialExecutor
 from radiokit.facts.errors import RadiokitError
 from radiokit.facts.jsonable import jsonable
 from radiokit.facts.verdict import Outcome
-from radiokit.measure.twin import Twin, scaled_ulps, working_precision
+from radiokit.measure.twin import Twin, working_precision
 
 __all__ = ["Examined", "ModelStability", "chosen_models", "examine", "model_stability", "shown_parameters"]
 
@@ -26,7 +26,6 @@ _DIGITS = 50
 _FEW, _MORE = 60, 130  # digits of two evaluations that usually agree, so that thousands are not needed
 _MOST = 2000
 _ULP_DIGITS = 16  # a step of 1e-16, which is what float64 does to its inputs
-_TINY = 1e-290  # below it a kernel may give 0, since exp(x) is 0 for x < -708
 _THIN = 2  # of the ordinary pairs one in so many, unless the grid is dense
 
 
@@ -194,16 +193,16 @@ def examine(f: BSDF, *, dense: bool = False) -> Examined:
             undecided.append(f"{type(problem).__name__} at wi = {i.tolist()}, wo = {o.tolist()}")
             truths.append(None)
     known = np.array([k for k, truth in enumerate(truths) if truth is not None], dtype=int)
-    raw = np.array([_ulps(values[k], truths[k]) for k in known])
+    raw = np.array([value_ulps(values[k], truths[k]) for k in known])
     worst, where, condition = -1.0, int(known[0]) if len(known) else 0, 0.0
     for k, error in sorted(zip(known.tolist(), raw.tolist(), strict=True), key=lambda item: -item[1]):
         if error <= worst:
             break
         here = _condition(twin, wi[k], wo[k])
-        scaled = _ulps(values[k], truths[k], here)
+        scaled = value_ulps(values[k], truths[k], here)
         if scaled > LIMIT:  # beside a zero of high order a rounding is no small step: take one as it is
             here = max(here, _condition(twin, wi[k], wo[k], _ULP_DIGITS))
-            scaled = _ulps(values[k], truths[k], here)
+            scaled = value_ulps(values[k], truths[k], here)
         if scaled > worst:
             worst, where, condition = scaled, k, here
     truth = truths[where]
@@ -222,13 +221,6 @@ def examine(f: BSDF, *, dense: bool = False) -> Examined:
     )
 
 
-def _ulps(value: float, truth: Any, condition: float = 1.0) -> float:
-    """Return the error in ulps over the condition number; none where value and truth are next to nothing."""
-    if abs(value) < _TINY and abs(truth) < _TINY:
-        return 0.0
-    return float(scaled_ulps(value, truth, condition))
-
-
 def _truth(twin: Twin, wi: FloatArray, wo: FloatArray) -> Any:
     """Return the twin's value to 50 digits, by two cheap evaluations where they agree and are not 0."""
     few, more = twin.rough(wi, wo, _FEW), twin.rough(wi, wo, _MORE)
@@ -239,7 +231,7 @@ def _truth(twin: Twin, wi: FloatArray, wo: FloatArray) -> Any:
         return twin.evaluate(wi, wo, digits=_DIGITS)
     except RadiokitError:
         last = twin.rough(wi, wo, _MOST)
-        if abs(last) < _TINY and abs(last) <= abs(more) / 10**_DIGITS:
+        if abs(last) < DARK and abs(last) <= abs(more) / 10**_DIGITS:
             return last  # what shrinks with every digit is 0
         raise
 
