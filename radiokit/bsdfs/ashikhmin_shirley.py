@@ -128,6 +128,7 @@ class AshikhminShirley(ScalarBSDF):
     """
 
     name = "ashikhmin_shirley"
+    kind = "glossy"
     SOURCE = SOURCE
     EXAMPLES = (
         {},

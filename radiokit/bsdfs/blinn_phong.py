@@ -103,6 +103,7 @@ class BlinnPhong(ScalarBSDF):
     """
 
     name = "blinn_phong"
+    kind = "glossy"
     SOURCE = SOURCE
     EXAMPLES = (
         {},

@@ -92,6 +92,7 @@ class DisneyDiffuse(ScalarBSDF):
     """
 
     name = "disney_diffuse"
+    kind = "diffuse"
     SOURCE = SOURCE
     EXAMPLES = ({"reflectance": 0.6}, {"roughness": 0.0}, {"roughness": 0.5}, {"roughness": 1.0})
 

@@ -188,6 +188,7 @@ class EON(ScalarBSDF):
     """
 
     name = "eon"
+    kind = "diffuse"
     SOURCE = SOURCE
     EXAMPLES = ({}, {"roughness": 1.0, "reflectance": 1.0}, {"roughness": 0.0, "reflectance": 1.0})
     dimensions: ClassVar[int] = 3

@@ -116,6 +116,7 @@ class Lafortune(ScalarBSDF):
     """
 
     name = "lafortune"
+    kind = "glossy"
     SOURCE = SOURCE
     EXAMPLES = (
         {},

@@ -81,6 +81,7 @@ class LambertTransmitter(ScalarBSDF):
     """
 
     name = "lambert_transmitter"
+    kind = "transmission"
     SOURCE = SOURCE
     EXAMPLES = ({}, {"reflectance": 0.2, "transmittance": 0.7}, {"reflectance": 0.0, "transmittance": 1.0})
     transmissive: ClassVar[bool] = True

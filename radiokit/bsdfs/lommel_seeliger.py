@@ -89,6 +89,7 @@ class LommelSeeliger(ScalarBSDF):
     """
 
     name = "lommel_seeliger"
+    kind = "diffuse"
     SOURCE = SOURCE
     EXAMPLES = ({}, {"albedo": 0.1}, {"albedo": 0.0})
 

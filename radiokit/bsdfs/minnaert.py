@@ -88,6 +88,7 @@ class Minnaert(ScalarBSDF):
     """
 
     name = "minnaert"
+    kind = "diffuse"
     SOURCE = SOURCE
     EXAMPLES = (
         {},

@@ -102,6 +102,7 @@ class OrenNayar(ScalarBSDF):
     """
 
     name = "oren_nayar"
+    kind = "diffuse"
     SOURCE = SOURCE
     EXAMPLES = (
         {},

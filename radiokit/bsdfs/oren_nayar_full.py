@@ -128,6 +128,7 @@ class OrenNayarFull(ScalarBSDF):
     """
 
     name = "oren_nayar_full"
+    kind = "diffuse"
     SOURCE = SOURCE
     EXAMPLES = (
         {},

@@ -79,6 +79,7 @@ class PhongOriginal(ScalarBSDF):
     """
 
     name = "phong_original"
+    kind = "glossy"
     SOURCE = SOURCE
     EXAMPLES = ({}, {"exponent": 4.0, "coefficient": 0.1}, {"exponent": 200.0, "coefficient": 0.8})
 

@@ -78,6 +78,7 @@ class Retro(ScalarBSDF):
     """
 
     name = "retro"
+    kind = "glossy"
     SOURCE = SOURCE
     EXAMPLES = ({}, {"exponent": 1.0}, {"exponent": 100.0, "reflectance": 0.5})
 

@@ -117,6 +117,7 @@ class Schlick(ScalarBSDF):
     """
 
     name = "schlick"
+    kind = "glossy"
     SOURCE = SOURCE
     EXAMPLES = (
         {},

@@ -83,6 +83,7 @@ class Ward(ScalarBSDF):
     """
 
     name = "ward"
+    kind = "glossy"
     SOURCE = SOURCE
     EXAMPLES = (
         {},

@@ -79,6 +79,7 @@ class WardDuer(ScalarBSDF):
     """
 
     name = "ward_duer"
+    kind = "glossy"
     SOURCE = SOURCE
     EXAMPLES = (
         {},

@@ -76,6 +76,7 @@ class WardGMD(ScalarBSDF):
     """
 
     name = "ward_gmd"
+    kind = "glossy"
     SOURCE = SOURCE
     EXAMPLES = (
         {},
