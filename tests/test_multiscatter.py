@@ -26,7 +26,7 @@ def test_the_loss_at_full_width_is_the_closed_form():
     assert _table(1.0)[1] == pytest.approx(1 - 4 / 3 * (1 - np.log(2)), abs=1e-12)
 
 
-@pytest.mark.parametrize("alpha", [1.0, 0.3, 0.03, 1e-3])
+@pytest.mark.parametrize("alpha", [1.0, 0.3, 0.03, 0.01])
 def test_the_loss_at_normal_incidence_has_thirty_digits(alpha):
     """A facet tilted by θ mirrors the normal to 2θ: one integral, over tanθ = α s up to 45°."""
     with working_precision(30):
@@ -44,7 +44,7 @@ def test_the_loss_at_normal_incidence_has_thirty_digits(alpha):
         assert float(loss(1.0, alpha)) == pytest.approx(float(exact), abs=2e-12)
 
 
-@pytest.mark.parametrize("alpha", [0.3, 0.03, 1e-3])
+@pytest.mark.parametrize("alpha", [0.3, 0.03, 0.01])
 def test_the_loss_is_what_the_albedo_of_single_scattering_leaves(alpha):
     f = bsdf("ggx", alpha=alpha)
     for theta in np.radians([20.0, 60.0, 85.0, 89.0, 89.9]):
@@ -52,7 +52,7 @@ def test_the_loss_is_what_the_albedo_of_single_scattering_leaves(alpha):
         assert abs(1 - kept.value - loss(np.cos(theta), alpha)) <= kept.error + 1e-11
 
 
-@pytest.mark.parametrize("alpha", [1.0, 0.1, 1e-3])
+@pytest.mark.parametrize("alpha", [1.0, 0.1, 0.01])
 def test_nothing_is_lost_in_a_white_furnace(alpha):
     f = GGXMultiscatter(alpha=alpha)
     for theta in np.radians([0.0, 45.0, 85.0, 89.9]):

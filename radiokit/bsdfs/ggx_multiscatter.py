@@ -27,9 +27,10 @@ from radiokit.measure.vectors import from_disk
 from radiokit.physics import fresnel
 from radiokit.physics import microfacet as paper
 from radiokit.physics.facet import reflect
-from radiokit.physics.fresnel import conductor_kernel, schlick_kernel
+from radiokit.physics.fresnel import conductor_kernel
 from radiokit.physics.masking import HORIZON, correlated_over_cosines
 from radiokit.physics.ndf import ggx_area_isotropic, ggx_density
+from radiokit.physics.reflection import metal_share, schlick_share
 from radiokit.physics.visible import ggx_visible, reflected_density
 
 __all__ = ["GGXMultiscatter"]
@@ -57,11 +58,14 @@ def _loss(mu: Any, alpha: Any, per_span: Any, *series: Any) -> Any:
     m = mu / alpha
     steep = np.sqrt(1.0 + m * m)
     x = np.sqrt(np.sqrt(log1p(m + m * m / (1.0 + steep)) * per_span))
-    twice = 4.0 * x - 2.0
-    one, two = 0.0 * mu, 0.0 * mu
+    # Clenshaw's sum in Reinsch's form, which keeps the digits at both ends: T_k(-y) = (-1)^k T_k(y).
+    low = x < 0.5
+    sign, u = select(low, -1.0, 1.0), -4.0 * select(low, x, 1.0 - x)
+    step, total = 0.0 * mu, 0.0 * mu
     for k in range(len(series) - 1, 0, -1):
-        one, two = series[k] + twice * one - two, one
-    loss = series[0] + 0.5 * twice * one - two
+        total = series[k] * (sign if k % 2 else 1.0) + u * step + total
+        step = total + step
+    loss = series[0] + 0.5 * u * step + total
     return select(loss > 0.0, loss / steep, 0.0)
 
 
@@ -74,13 +78,13 @@ def _single(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, alpha: Any) ->
 
 
 @kernel
-def _perfect(cosine: Any, a: Any, b: Any) -> Any:
-    return 1.0 + 0.0 * cosine
+def _perfect(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, a: Any, b: Any) -> Any:
+    return 1.0 + 0.0 * iz
 
 
 @kernel
-def _schlick(cosine: Any, a: Any, b: Any) -> Any:
-    return schlick_kernel(cosine, a)
+def _schlick(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, a: Any, b: Any) -> Any:
+    return schlick_share(ix, iy, iz, ox, oy, oz, a)
 
 
 def _value(
@@ -89,9 +93,7 @@ def _value(
 ) -> Any:  # fmt: skip
     above = (iz > HORIZON) & (oz > HORIZON)
     zi, zo = select(above, iz, 1.0), select(above, oz, 1.0)
-    x, y, z = ix + ox, iy + oy, zi + zo
-    cosine = 0.5 * np.sqrt(x * x + y * y + z * z)
-    single = _mirror(select(cosine < 1.0, cosine, 1.0), a, b) * _single(ix, iy, zi, ox, oy, zo, alpha)
+    single = _mirror(ix, iy, zi, ox, oy, zo, a, b) * _single(ix, iy, zi, ox, oy, zo, alpha)
     lost = _loss(zi, alpha, per_span, *series) * _loss(zo, alpha, per_span, *series)
     return select(above, single + tint * (lost * scale), 0.0)
 
@@ -134,7 +136,7 @@ def _kernels(mirror: Kernel) -> tuple[Kernel, Kernel, Kernel]:
     return value, _density, bind(_sample, _whole=value)
 
 
-_PERFECT, _BY_F0, _METAL = _kernels(_perfect), _kernels(_schlick), _kernels(conductor_kernel)
+_PERFECT, _BY_F0, _METAL = _kernels(_perfect), _kernels(_schlick), _kernels(metal_share)
 
 
 def _per_span(alpha: float) -> float:
@@ -198,7 +200,7 @@ class GGXMultiscatter(ScalarBSDF):
     Parameters
     ----------
     alpha : float
-        Width α of the slope distribution [1], not squared, in [1e-3, 1].
+        Width α of the slope distribution [1], not squared, in [0.01, 1]: narrower lobes lose next to nothing, and `ggx` will do.
     eta, k : float or sequence of float, optional
         Relative index η + ik of the metal [1]: η above 0, extinction k at least 0; both or neither.
     f0 : float or sequence of float, optional
@@ -224,7 +226,7 @@ class GGXMultiscatter(ScalarBSDF):
     dimensions = 3
     precision = 1e-11  # that of E
 
-    alpha: float = parameter("[1e-3, 1]", "1", "width of the slope distribution", default=0.3)
+    alpha: float = parameter("[0.01, 1]", "1", "width of the slope distribution", default=0.3)
     eta: Spectrum | None = parameter(
         "(0, inf)", "1", "real part of the relative index", spectral=True, default=None
     )

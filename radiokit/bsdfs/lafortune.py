@@ -56,29 +56,22 @@ def _power(x: Any, exponent: Any) -> Any:
 
 
 @kernel
-def _lobe(
-    ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, cx: Any, cy: Any, cz: Any, exponent: Any
-) -> Any:
-    """Return cosⁿα from the lobe's axis, 0 below the horizon, and |C wo|ⁿ."""
-    x, y, z, length = _axis(ox, oy, oz, cx, cy, cz)
-    lit = (iz > 0.0) & (oz > 0.0)
-    return _power(select(lit, x * ix + y * iy + z * iz, 0.0), exponent), _power(length, exponent)
-
-
-@kernel
 def _value(
     ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, cx: Any, cy: Any, cz: Any, exponent: Any, rho: Any
 ) -> Any:
-    lobe, scale = _lobe(ix, iy, iz, ox, oy, oz, cx, cy, cz, exponent)
-    return rho * ((exponent + 2.0) / (2.0 * np.pi) * (lobe * scale))
+    along = cx * ix * ox + cy * iy * oy + cz * iz * oz
+    lit = (iz > 0.0) & (oz > 0.0)
+    return rho * ((exponent + 2.0) / (2.0 * np.pi) * _power(select(lit, along, 0.0), exponent))
 
 
 @kernel
 def _density(
     ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, cx: Any, cy: Any, cz: Any, exponent: Any, rho: Any
 ) -> Any:
-    lobe, _ = _lobe(ix, iy, iz, ox, oy, oz, cx, cy, cz, exponent)
-    return (exponent + 1.0) / (2.0 * np.pi) * lobe
+    """Return the density about the lobe's axis."""
+    x, y, z, _ = _axis(ox, oy, oz, cx, cy, cz)
+    lit = (iz > 0.0) & (oz > 0.0)
+    return (exponent + 1.0) / (2.0 * np.pi) * _power(select(lit, x * ix + y * iy + z * iz, 0.0), exponent)
 
 
 @kernel

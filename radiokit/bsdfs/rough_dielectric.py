@@ -25,7 +25,7 @@ from radiokit.measure.passes import run
 from radiokit.measure.twin import Twin
 from radiokit.physics import microfacet as paper
 from radiokit.physics.facet import reflect, refract, refraction_share
-from radiokit.physics.interface import dielectric_kernel
+from radiokit.physics.interface import conductor_facet_kernel
 from radiokit.physics.masking import HORIZON, masking, separable_ratio
 from radiokit.physics.ndf import beckmann_area, beckmann_density, ggx_area, ggx_density
 from radiokit.physics.visible import beckmann_visible, ggx_visible
@@ -85,8 +85,10 @@ def _lobe(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, alpha: Any, eta:
     share = select(front, refraction_share(along_i, along_o, length2), 0.0)
     passed = 4.0 * share * _passed(n_i, n_o, abs(along_i), abs(along_o))
     cosine = 0.5 * np.sqrt(length2)
-    cosine = select(cosine < 1.0, cosine, 1.0)
-    mirrored = dielectric_kernel(select(down_i, -cosine, cosine), eta)
+    dx, dy, dz = ix - ox, iy - oy, iz - oz
+    sine = 0.5 * np.sqrt(dx * dx + dy * dy + dz * dz)
+    cosine, sine = select(cosine < 1.0, cosine, 1.0), select(sine < 1.0, sine, 1.0)
+    mirrored = conductor_facet_kernel(cosine, sine, select(down_i, 1.0 / eta, eta), 0.0)
     lobe = _facets(hx, hy, hz, alpha, alpha) * select(through, passed, mirrored)
     return select(off, lobe, 0.0), select(through, n_i, 1.0), select(through, n_o, 1.0)
 
@@ -168,7 +170,7 @@ class RoughDielectric(ScalarBSDF):
     alpha : float
         Width α of the slope distribution [1], not squared, in [1e-4, 1].
     eta : float
-        η, the index below the surface over that above it [1], in [1e-3, 1e3], and at least 1e-4 away from 1:
+        η, the index below the surface over that above it [1], in [0.1, 10], and at least 1e-4 away from 1:
         where nothing is bent there is no lobe. A single number, since the refracted directions depend on it.
     distribution : {"ggx", "beckmann"}
         The law of the facets' slopes.
@@ -191,6 +193,7 @@ class RoughDielectric(ScalarBSDF):
         {"eta": 1 / 1.5},
         {"alpha": 1.0, "eta": 1.33},
         {"alpha": 0.05, "eta": 2.4},
+        {"alpha": 1e-3},
         {"alpha": 0.4, "distribution": "beckmann"},
     )
 
@@ -199,7 +202,7 @@ class RoughDielectric(ScalarBSDF):
     dimensions = 3
 
     alpha: float = parameter("[1e-4, 1]", "1", "width of the slope distribution", default=0.3)
-    eta: float = parameter("[1e-3, 1e3]", "1", "index below the surface over that above it", default=1.5)
+    eta: float = parameter("[0.1, 10]", "1", "index below the surface over that above it", default=1.5)
     distribution: str = choice("ggx", "beckmann", meaning="law of the facets' slopes")
 
     def __post_init__(self) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 
 from radiokit.measure.kernels import Kernel, bind, kernel, select
 from radiokit.physics.facet import reflect
-from radiokit.physics.interface import conductor_kernel
+from radiokit.physics.interface import conductor_facet_kernel
 from radiokit.physics.masking import (
     HORIZON,
     correlated_over_cosines,
@@ -211,7 +211,11 @@ def metal_share(ix: Any, iy: Any, iz: Any, ox: Any, oy: Any, oz: Any, eta: Any, 
     >>> round(float(metal_share(0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.2, 3.0)), 12)
     0.92337164751
     """
-    return conductor_kernel(_facet_cosine(ix, iy, iz, ox, oy, oz), eta, k)
+    x, y, z = ix - ox, iy - oy, iz - oz
+    sine = 0.5 * np.sqrt(x * x + y * y + z * z)
+    return conductor_facet_kernel(
+        _facet_cosine(ix, iy, iz, ox, oy, oz), select(sine < 1.0, sine, 1.0), eta, k
+    )
 
 
 @kernel
