@@ -200,7 +200,8 @@ class GGXMultiscatter(ScalarBSDF):
     Parameters
     ----------
     alpha : float
-        Width α of the slope distribution [1], not squared, in [0.01, 1]: narrower lobes lose next to nothing, and `ggx` will do.
+        Width α of the slope distribution [1], not squared, in [0.01, 1]: narrower lobes lose next to
+        nothing, and ``ggx`` will do.
     eta, k : float or sequence of float, optional
         Relative index η + ik of the metal [1]: η above 0, extinction k at least 0; both or neither.
     f0 : float or sequence of float, optional
