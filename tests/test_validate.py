@@ -17,14 +17,18 @@ from radiokit.checks.sampling import P_VALUES
 from radiokit.contracts.bsdf import REGISTRY, Claims
 from radiokit.contracts.parameters import parameters_of
 from radiokit.faces.plots.work_precision import draw_work_precision, work_precision
-from radiokit.faces.validate import LEVEL, MUST_HOLD, validate
+from radiokit.faces.validate import LEVEL, MUST_HOLD, everything, validate
+from radiokit.facts.errors import UnknownNameError
 from radiokit.facts.verdict import Outcome
 from radiokit.measure.statistics import sidak
+
+SOME = ("lambert", "mirror", "thin_slab", "phong", "blinn_phong", "ggx")
+"""Models of every kind of finding, quickly judged; the command ``radiokit validate`` judges all of them."""
 
 
 @pytest.fixture(scope="module")
 def found():
-    return validate()
+    return validate(names=(*SOME, *rk.list_cases()))
 
 
 def test_everything_holds(found):
@@ -35,9 +39,14 @@ def test_everything_holds(found):
 
 
 def test_every_model_and_every_method_of_every_case_is_there(found):
-    assert {report.subject for report in found.models} == set(rk.list_bsdfs())
-    expected = {(name, method) for name in rk.list_cases() for method in rk.case(name).methods}
-    assert {(row.case, row.method) for row in found.cases} == expected
+    models, cases = everything()
+    assert models == [(name, values) for name in rk.list_bsdfs() for values in REGISTRY.get(name).EXAMPLES]
+    assert set(cases) == {(name, method) for name in rk.list_cases() for method in rk.case(name).methods}
+    judged = [(report.subject, report.parameters) for report in found.models]
+    assert judged == [(name, rk.bsdf(name, **values).parameters()) for name, values in models if name in SOME]
+    assert [(row.case, row.method) for row in found.cases] == cases
+    with pytest.raises(UnknownNameError, match="unknown model or case 'gxg'; did you mean 'ggx'"):
+        everything(["gxg"])
 
 
 def test_the_run_is_json(found):
@@ -64,7 +73,7 @@ def test_bounds_hold_with_nothing_to_spare_but_rounding(found):
 
 def test_the_findings_do_not_depend_on_the_workers(found):
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as executor:
-        again = validate(executor=executor, workers=2)
+        again = validate(names=(*SOME, *rk.list_cases()), executor=executor, workers=2)
 
     def essence(run):
         rows = [(row.case, row.method, row.verdict.estimate.value) for row in run.cases]
@@ -155,7 +164,7 @@ def test_one_level_is_shared_by_the_whole_run(found):
     assert total <= LEVEL * (1 + 1e-9)
 
 
-def test_narrow_lobes_are_among_the_examples(found):
+def test_narrow_lobes_are_among_the_examples():
     """Every model with a width α is sampled at 1e-3, or at the least that it allows."""
     for name, cls in REGISTRY.classes.items():
         widths = [n for n in parameters_of(cls) if n in ("alpha", "alpha_x")]

@@ -61,6 +61,7 @@ def _direction(theta: float, phi: float) -> Any:
 
 @app.command()
 def validate(
+    names: Annotated[list[str] | None, typer.Argument(help="Models and cases; without any, all.")] = None,
     json: Json = False,
     workers: Annotated[int | None, typer.Option(help="Local processes; all processors by default.")] = None,
     scheduler: Annotated[str | None, typer.Option(help="Address of a Dask scheduler to use.")] = None,
@@ -74,7 +75,7 @@ def validate(
 
     count = available_workers() if workers is None else workers
     with open_executor(count, scheduler) as executor, progress_bar("validating", not json) as progress:
-        found = run(executor=executor, workers=count, seed=seed, progress=progress)
+        found = run(names=names or None, executor=executor, workers=count, seed=seed, progress=progress)
     drawn = None
     if not no_figures:
         from radiokit.faces.plots.work_precision import draw_work_precision
@@ -90,14 +91,16 @@ def validate(
 
 
 def _show_validation(found: Any) -> None:
+    from radiokit.contracts.bsdf import bsdf
     from radiokit.faces.validate import MUST_HOLD
 
     rows = []
     for report in found.models:
+        usual = bsdf(report.subject).parameters()
         values = ", ".join(
             f"{name}={value:g}" if isinstance(value, float) else f"{name}={value}"
             for name, value in report.parameters.items()
-            if value is not None
+            if value is not None and value != usual.get(name)
         )
         for verdict in report:
             rows.append((report.subject, values, verdict.check, verdict.outcome, verdict.message))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import platform
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from importlib.metadata import version
@@ -14,19 +14,19 @@ from radiokit.checks.claims import claims
 from radiokit.checks.judge import check
 from radiokit.contracts.bsdf import REGISTRY, bsdf
 from radiokit.faces.workers import SerialExecutor
-from radiokit.facts.errors import RadiokitError
+from radiokit.facts.errors import RadiokitError, UnknownNameError
 from radiokit.facts.jsonable import jsonable
 from radiokit.facts.report import EXIT_CODES, Report
 from radiokit.facts.verdict import Evidence, Outcome, Verdict
 from radiokit.measure.statistics import sidak
 from radiokit.worlds.cases.catalogue import case, list_cases
 
-__all__ = ["LEVEL", "CaseRow", "Validation", "validate"]
+__all__ = ["LEVEL", "CaseRow", "Validation", "everything", "validate"]
 
 LEVEL = 1e-6
 """Chance that a run rejects something right, over all its statistical tests together."""
 
-MUST_HOLD = ("values", "claims", "sampling")
+MUST_HOLD = ("values", "claims", "sampling", "microfacet")
 """What must hold of a model; a law that it breaks as claimed is no fault."""
 
 
@@ -114,8 +114,33 @@ def machine() -> dict[str, str]:
     }
 
 
+def everything(
+    names: Iterable[str] | None = None,
+) -> tuple[list[tuple[str, dict[str, Any]]], list[tuple[str, str]]]:
+    """Return what is validated: models with their parameters, and cases with their methods.
+
+    Raises
+    ------
+    UnknownNameError
+        When one of ``names`` is neither a model nor a case.
+
+    >>> everything(["lambert"])[0][1]
+    ('lambert', {'reflectance': 0.5})
+    """
+    models = [(name, dict(values)) for name, cls in REGISTRY.classes.items() for values in cls.EXAMPLES]
+    rows = [(name, method) for name in list_cases() for method in case(name).methods]
+    if names is None:
+        return models, rows
+    wanted, known = list(names), [*REGISTRY.classes, *list_cases()]
+    for name in wanted:
+        if name not in known:
+            raise UnknownNameError("model or case", name, known)
+    return [one for one in models if one[0] in wanted], [one for one in rows if one[0] in wanted]
+
+
 def validate(
     *,
+    names: Iterable[str] | None = None,
     executor: Executor | None = None,
     workers: int = 1,
     seed: int = 0,
@@ -125,6 +150,8 @@ def validate(
 
     Parameters
     ----------
+    names : iterable of str, optional
+        Only these models and cases.
     executor : concurrent.futures.Executor, optional
         Where the work is done; the findings do not depend on it.
     workers : int
@@ -135,8 +162,7 @@ def validate(
         Called with the number of finished tasks and the number of all.
     """
     start = time.perf_counter()
-    models = [(name, dict(values)) for name, cls in REGISTRY.classes.items() for values in cls.EXAMPLES]
-    rows = [(name, method) for name in list_cases() for method in case(name).methods]
+    models, rows = everything(names)
     count = len(models) + len(rows)  # all share the level, whether or not they are statistical
     tasks: list[tuple[Any, ...]] = [("model", name, values, count) for name, values in models]
     tasks += [("case", name, method, count, seed + i) for i, (name, method) in enumerate(rows)]
