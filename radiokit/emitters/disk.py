@@ -215,7 +215,9 @@ class Disk(Emitter):
         else:
             outward = frame(across)[0]
         first = math.cos(tilt) * outward - math.sin(tilt) * across
-        return np.stack((first, np.cross(across, outward), math.cos(tilt) * across + math.sin(tilt) * outward))
+        return np.stack(
+            (first, np.cross(across, outward), math.cos(tilt) * across + math.sin(tilt) * outward)
+        )
 
 
 def _density(a: float, b: float, kappa: float, flat: FloatArray) -> FloatArray:

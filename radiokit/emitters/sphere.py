@@ -30,7 +30,7 @@ _EPS = float(np.finfo(float).eps)
 
 @dataclass(frozen=True)
 class _View:
-    """A sphere from one point: the way to its centre, and sine and cosine of half its width, exact to the ulp."""
+    """A sphere from one point: the way to its centre, and sine and cosine of half its width."""
 
     towards: RationalVector
     square: Fraction  # the squares of the distance to the centre, and of that along a tangent
@@ -92,7 +92,7 @@ class Sphere(Emitter):
         return np.where(self._meets(direction, view), 1.0 / _cone(view), 0.0)
 
     def solid_angle(self, position: FloatArray) -> Estimate:
-        """Return Ω = 4π sin²(σ/2) [sr], with sinσ = R/d: half the sphere of directions for a sphere touched."""
+        """Return Ω = 4π sin²(σ/2) [sr], with sinσ = R/d: 2π for a sphere touched."""
         value = _cone(self._view(position))
         return Estimate(value, 8 * _EPS * value, "rounding", method="closed form")
 

@@ -33,7 +33,7 @@ def cap_irradiance(
 
     with β half the azimuth that the cone takes of the horizon, and T half the arc's own angle. Both terms are
     ∫ over v = sinσ sin τ of a common form, whose difference is a positive integrand: it is summed in
-    ξ = asinh tan τ where the terms nearly cancel. An axis above the horizon adds the whole cone's π sin²σ cosθ.
+    ξ = asinh tan τ where the terms nearly cancel. An axis above the horizon adds π sin²σ cosθ.
 
     Parameters
     ----------
