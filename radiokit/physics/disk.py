@@ -84,7 +84,7 @@ class DiskView:
         over a quarter turn, and t = tan²θ makes it Carlson's integral.
 
         >>> half = DiskView(radius=1.0, depth=1.0, offset=0.0, rim=-1.0, power=0.0)
-        >>> round(half.solid_angle() / (2 * np.pi * (1 - np.sqrt(0.5))), 14)
+        >>> round(half.solid_angle() / (2 * math.pi * (1 - math.sqrt(0.5))), 14)
         1.0
         """
         from scipy.special import elliprj

@@ -50,7 +50,7 @@ def parallel_disks(*, radius1: npt.ArrayLike, radius2: npt.ArrayLike, distance: 
     """Return F from a disk to another, parallel one on the same axis.
 
     With p and q the shortest and longest ways from edge to edge, F = (2 r₂/(p + q))². That is the catalogue's
-    [X − √(X² − 4(r₂/r₁)²)]/2 with X = 1 + (h² + r₂²)/r₁², whose difference loses 25 % of it far away.
+    [X − √(X² − 4(r₂/r₁)²)]/2 with X = 1 + (h² + r₂²)/r₁², whose difference has no digits left far away.
 
     Parameters
     ----------
@@ -331,7 +331,7 @@ def perpendicular_rectangles(*, edge: npt.ArrayLike, width: npt.ArrayLike, heigh
     Source: Howell's catalogue, C-14.
 
     >>> round(float(perpendicular_rectangles(edge=1.0, width=1.0, height=1.0)), 12)
-    0.200043776071
+    0.200043776075
     """
     e, w, h = _positive("edge", edge), _positive("width", width), _positive("height", height)
     wide, high = np.broadcast_arrays(w / e, h / e)
