@@ -15,7 +15,6 @@ from radiokit.facts.directions import unit
 from radiokit.facts.errors import ParameterError
 from radiokit.measure.quadrature import box
 from radiokit.measure.statistics import chi_square, sidak
-from radiokit.measure.warps import UniformSphere
 from radiokit.physics.disk import DiskView
 from radiokit.worlds.scene import irradiance, solid_angle
 
@@ -68,7 +67,7 @@ def relative(estimate, truth):
 
 def sphere_truth(center, radius, normal):
     """∫ cosθ dω in rings about the way to the centre, each clipped by the horizon: not a contour."""
-    v, n = exact(center), normalised(exact(normal))
+    v, n = [mpf(x) for x in center], normalised(exact(normal))
     d = mpmath.sqrt(inner(v, v))
     c = inner(v, n) / d
     sine = mpmath.sqrt(inner(cross(v, n), cross(v, n))) / d
@@ -198,20 +197,15 @@ def test_sphere_all_but_straight_below_and_above(lift):
 
 
 def test_sphere_of_any_pose(rng):
-    for _ in range(30):
-        light = Sphere(center=rng.normal(size=3) * 3, radius=0.5, radiance=1.0)
-        position, normal = rng.normal(size=3), unit(rng.normal(size=3))
-        v = [a - b for a, b in zip(exact(light.center), exact(position), strict=True)]
-        if inner(v, v) <= mpf("0.3"):
-            continue
-        truth = sphere_truth([*v], 0.5, normal) if all(float(x) == x for x in v) else None
-        found = irradiance(light, normal=normal, position=position)
-        if truth is not None:
-            assert inside_bound(found, truth)
-        # Irradiance from both sides differs by the whole sphere's, signed.
-        other = irradiance(light, normal=-normal, position=position)
-        whole = mpmath.pi * mpf("0.25") * inner(v, exact(normal)) / inner(v, v) ** mpf(1.5)
-        assert abs(mpf(float(found.value)) - mpf(float(other.value)) - whole) <= 1e-14
+    for _ in range(12):
+        center, normal = 2.0 * unit(rng.normal(size=3)) * rng.uniform(0.3, 1.0), unit(rng.normal(size=3))
+        light = Sphere(center=center, radius=0.5, radiance=1.0)
+        assert inside_bound(irradiance(light, normal=normal), sphere_truth(center, 0.5, normal))
+        where = rng.integers(-8, 8, size=3)  # exact differences
+        moved = Sphere(center=np.round(center, 2) + where, radius=0.5, radiance=1.0)
+        seen = [a - b for a, b in zip(exact(moved.center), exact(where), strict=True)]
+        truth = sphere_truth(seen, 0.5, normal)
+        assert inside_bound(irradiance(moved, normal=normal, position=where), truth)
 
 
 @pytest.mark.parametrize("ratio", [1e-90, 1e-8, 1e-3, 0.5, 0.9, 1 - 1e-9, 1 - 2**-52])
@@ -230,19 +224,17 @@ def test_sphere_solid_angle(ratio):
     Disk(center=(0, 0, 3), normal=(1, 0, -1), radius=2, radiance=1.5, exponent=3),
 ], ids=["sphere", "disk", "disk-cos3"])  # fmt: skip
 def test_flux_passes_a_sphere_around_it(light):
-    """Φ = ∮ E dA over a sphere of radius 50 around the light, whatever its radius."""
-
-    def crossing(u):
-        out = UniformSphere().sample(u)
-        where = np.array(light.center) + 50.0 * out
-        found = [irradiance(light, normal=-w, position=p, rtol=1e-9).value
-                 for p, w in zip(where, out, strict=True)]  # fmt: skip
-        return 4 * np.pi * 50.0**2 * np.array(found)
-
-    x, w = np.polynomial.legendre.leggauss(6 if getattr(light, "exponent", 0) else 10)
-    grid = np.stack(np.meshgrid((x + 1) / 2, (x + 1) / 2, indexing="ij"), axis=-1).reshape(-1, 2)
-    value = np.outer(w, w).ravel() / 4 @ crossing(grid)
-    assert value == pytest.approx(float(light.flux().value), rel=0.05)
+    """Φ = ∮ E dA over a sphere of radius 5 around the light: E depends on the angle from its axis only."""
+    axis = unit(getattr(light, "normal", (0, 0, 1)))
+    aside = unit(np.cross(axis, [0.2, 0.9, 0.1]))
+    x, w = np.polynomial.legendre.leggauss(16)
+    total = 0.0
+    for low in (-1.0, 0.0):  # a disk shines on one half
+        for mu, weight in zip(low + 0.5 * (x + 1), 0.5 * w, strict=True):
+            out = mu * axis + math.sqrt(1 - mu * mu) * aside
+            found = irradiance(light, normal=-out, position=np.array(light.center) + 5 * out, rtol=1e-9)
+            total += 2 * np.pi * 25 * weight * found.value
+    assert total == pytest.approx(float(light.flux().value), rel=1e-8)
 
 
 # --- the disk ---
@@ -255,7 +247,7 @@ DISKS = {
     "wall": Disk(center=(2, 0, 0.5), normal=(-1, 0, 0), radius=1, radiance=1.0),
     "tiny": Disk(center=(0.3, 0.4, 1), normal=(0.1, 0, -1), radius=1e-8, radiance=1.0),
     "huge": Disk(center=(10, 0, 1), normal=(0, 0.001, -1), radius=1e4, radiance=1.0),
-    "near its edge": Disk(center=(2.01, 0, 0.01), normal=(0, 0, -1), radius=2, radiance=1.0),
+    "near its edge": Disk(center=(2.05, 0, 0.05), normal=(0, 0, -1), radius=2, radiance=1.0),
     "grazing": Disk(center=(3, 0, 1e-3), normal=(0, 0, -1), radius=2, radiance=1.0),
     "all but touched": Disk(center=(0.5, 0, 1e-3), normal=(0, 0, -1), radius=1, radiance=1.0),
 }
@@ -290,7 +282,7 @@ def test_the_contour_is_the_definition():
     m, n, v = normalised(exact(disk.normal)), normalised(exact(normal)), exact(disk.center)
     first = normalised(cross(m, n))
     second = cross(m, first)
-    with mpmath.workdps(15):
+    with mpmath.workdps(12):
         # polar about the centre; above: height + ρ k sin(angle) > 0
         steep, height = inner(n, second), inner(n, v)
 
@@ -367,7 +359,7 @@ LIGHTS = {
 @pytest.mark.parametrize("name", LIGHTS)
 @pytest.mark.parametrize("planted", [False, True], ids=["right", "planted"])
 def test_samples_follow_the_density(name, planted, rng):
-    """Uniform directions over the whole sphere, weighed by the density, fill the same cells as samples do."""
+    """A fine grid in a cone around the light, weighed by the density, fills the same cells as samples do."""
     light, spread = LIGHTS[name]
     u = rng.random((40_000, 2))
     if planted:
@@ -379,7 +371,6 @@ def test_samples_follow_the_density(name, planted, rng):
     assert density.max() <= spread * density.min() * (1 + 1e-12)
     omega = float(light.solid_angle(ORIGIN).value)
     assert np.mean(1 / density) == pytest.approx(omega, rel=0.02)
-    # In the square of the other pdf: a rejection of uniform points gives the share of each ring and sector.
     axis = light._view(ORIGIN).axis if isinstance(light, Sphere) else light._seen(ORIGIN).axes[2]
     first = unit(np.cross(axis, [0.3, 0.9, -0.2]))
     second = np.cross(axis, first)
@@ -391,9 +382,8 @@ def test_samples_follow_the_density(name, planted, rng):
 
     where, count = cells(directions)
     observed = np.bincount(where, weights=None, minlength=count).astype(float)
-    # the reference: a fine midpoint grid in the cone around the light, weighed by pdf
     half = math.acos(max(-1.0, float((directions @ axis).min()))) * 1.001
-    k = (np.arange(900) + 0.5) / 900
+    k = (np.arange(500) + 0.5) / 500
     top = 1 - math.cos(half)
     depth, turn = np.meshgrid(top * k, 2 * np.pi * k, indexing="ij")
     r = np.sqrt(depth * (2 - depth))
