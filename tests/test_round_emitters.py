@@ -267,7 +267,7 @@ def test_disk_against_the_contour(name, rng):
         width = thin * min(1.0, disk.radius / math.hypot(*disk.center))
         normals.append(unit(flat + width * top))
     for normal in normals:
-        with mpmath.workdps(75 if name == "tiny" else 50):
+        with mpmath.workdps(75 if name == "tiny" else 36):
             found, truth = irradiance(disk, normal=normal), disk_truth(disk, normal)
         assert inside_bound(found, truth), (normal, found, truth)
         if truth:
@@ -383,7 +383,7 @@ def test_samples_follow_the_density(name, planted, rng):
     where, count = cells(directions)
     observed = np.bincount(where, weights=None, minlength=count).astype(float)
     half = math.acos(max(-1.0, float((directions @ axis).min()))) * 1.001
-    k = (np.arange(500) + 0.5) / 500
+    k = (np.arange(300) + 0.5) / 300
     top = 1 - math.cos(half)
     depth, turn = np.meshgrid(top * k, 2 * np.pi * k, indexing="ij")
     r = np.sqrt(depth * (2 - depth))

@@ -11,9 +11,9 @@ from radiokit.facts.source import Source
 __all__ = ["CAP_SOURCE", "cap_irradiance"]
 
 CAP_SOURCE = Source(
-    authors="Snyder, Gatamel",
+    authors="Snyder",
     year=1996,
-    title="Area light sources for real-time graphics. Microsoft Research, MSR-TR-96-11",
+    title="Area Light Sources for Real-Time Graphics. Microsoft Research, MSR-TR-96-11",
     equation="irradiance of a sphere that the horizon cuts",
     errata="its differences cancel for a sliver of a sphere: here they are one integral of positive terms",
 )

@@ -27,7 +27,7 @@ SOLID_ANGLE_SOURCE = Source(
     year=1995,
     title="Numerical computation of real or complex elliptic integrals",
     doi="10.1007/BF02198293",
-    equation="R_J by duplication, algorithm for the integral (3)",
+    equation="R_J by duplication",
 )
 
 _EPS = float(np.finfo(float).eps)
@@ -81,7 +81,7 @@ class DiskView:
         """Return Ω = 4/3 AB R_J(0, 1 + A², 1 + B², 1) [sr], a single term.
 
         Strips across the cone's section give Ω = 4AB ∫ cos²θ dθ / ((1 + A² sin²θ) √(1 + A² sin²θ + B² cos²θ))
-        over a quarter turn, and t = tan²θ makes it Carlson's integral.
+        over a quarter turn, and t = tan²θ makes it Carlson's integral (1995), as SciPy computes it.
 
         >>> half = DiskView(radius=1.0, depth=1.0, offset=0.0, rim=-1.0, power=0.0)
         >>> round(half.solid_angle() / (2 * math.pi * (1 - math.sqrt(0.5))), 14)

@@ -25,8 +25,8 @@ _LEFT_OUT: dict[str, tuple[str, tuple[str, ...]]] = {
     "": ("", ()),
     "cut": (" For quadrature, the kink that the horizon makes leaves 5e-7.", ("quadrature",)),
     "step": (
-        " The light's edge is a step in one coordinate of the material's samples, about which replicates of "
-        "low-discrepancy points agree too well.",
+        " The light's edge is a step in one coordinate of the material's samples, so that replicates of "
+        "low-discrepancy points take two values only and may agree by chance.",
         ("qmc",),
     ),
     "small": (" Samples of the material do not find so small a light.", ("mc-bsdf", "mis", "qmc")),
