@@ -134,7 +134,83 @@ def highlight(alpha, theta_deg):
     return density * shadowed / (4 * mpmath.cos(theta) ** 2) * 2 * mpmath.cos(theta)
 
 
+def under_disk(radius, depth, offset):
+    """ρ/π ∫ cos⁴/a² dA in rings about the disk's centre, the angle by hand."""
+    a, b = mpf(depth), mpf(offset)
+
+    def ring(t):  # ∫ dφ/(s + 2bρ cosφ)² = 2π s/(s² − 4b²ρ²)^(3/2), in t = (ρ/R)²
+        square = t * mpf(radius) ** 2
+        s = a * a + b * b + square
+        return s / (s * s - 4 * b * b * square) ** mpf(1.5) * (a * mpf(radius)) ** 2
+
+    return mpmath.quad(ring, [0, *[mpf(10) ** k for k in range(-9, 0)], 1]) / 2
+
+
+def under_sphere(sine, elevation_deg):
+    """ρ/π ∫ cosθ dω in rings about the way to the centre, each clipped by the horizon."""
+    e = deg(elevation_deg)
+
+    def ring(a):
+        p, q = mpmath.sin(e) * mpmath.cos(a), mpmath.cos(e) * mpmath.sin(a)
+        if p >= q:
+            return 2 * mpmath.pi * p * mpmath.sin(a)
+        edge = mpmath.acos(-p / q) if p > -q else mpf(0)
+        return 2 * (p * edge + q * mpmath.sin(edge)) * mpmath.sin(a)
+
+    end = mpmath.asin(sine)
+    breaks = [0, abs(e), end] if 0 < abs(e) < end else [0, end]
+    return mpmath.quad(ring, breaks) / (2 * mpmath.pi)
+
+
+def wall_beside_disk():
+    """ρ/π ∫∫ a x/r⁴ dA, x the way along the wall's normal, in strips across it."""
+
+    def strip(t):
+        x, half = 3 + mpmath.sin(t), mpmath.cos(t)
+        s = mpmath.sqrt(x * x + 4)
+        return 2 * x * half * (half / (s * s * (s * s + half * half)) + mpmath.atan(half / s) / s**3)
+
+    return mpmath.quad(strip, [-mpmath.pi / 2, 0, mpmath.pi / 2]) / (2 * mpmath.pi)
+
+
+def wall_under_disk():
+    """The same 1 m below a disk's centre, in half rings, over which ∫ cosφ dφ is 2."""
+    return mpmath.quad(lambda rho: 2 * rho**2 / (rho**2 + 1) ** 2, [0, 1]) / (2 * mpmath.pi)
+
+
+def phong_cone(cosine_squared):
+    """∫ 12 cos¹¹α sinα dα up to the light's edge."""
+    edge = mpmath.acos(mpmath.sqrt(cosine_squared))
+    return mpmath.quad(lambda a: 12 * mpmath.cos(a) ** 11 * mpmath.sin(a), [0, edge])
+
+
+ROUND = {
+    "lambert-under-disk": lambda: under_disk(1, 1, 0),
+    "lambert-under-disk-tiny": lambda: under_disk(mpf(10) ** -6, 1, 0),
+    "lambert-under-disk-huge": lambda: under_disk(1e4, 1, 0),
+    "lambert-under-disk-off-axis": lambda: under_disk(1, 2, 3),
+    "lambert-under-disk-below-its-edge": lambda: under_disk(1, mpf(1) / 2, 1),
+    "lambert-under-disk-tilted": lambda: under_disk(1, 2, 0) * mpmath.sqrt(2) / 2,
+    "lambert-wall-beside-disk": wall_beside_disk,
+    "lambert-wall-under-disk": wall_under_disk,
+    "lambert-under-cos2-disk": lambda: mpmath.quad(lambda t: mpf(1) / 2 / (1 + t) ** 3, [0, 1]),
+    "phong-10-under-disk": lambda: phong_cone(mpf("0.8")),
+    "phong-10-under-sphere": lambda: phong_cone(mpf("0.64")),
+    "phong-10-under-sphere-at-mirror": lambda: phong_cone(mpf("0.91")) / 2,
+    "mirror-under-sphere": lambda: mpf(0.9),
+    **{
+        f"lambert-under-sphere-at-{text}": lambda r=r: under_sphere(1 / mpf(r), 90)
+        for text, r in (("1.001m", 1.001), ("2m", 2.0), ("100m", 100.0), ("1000km", 1e6))
+    },
+    "lambert-under-sphere-30deg-above-horizon": lambda: under_sphere(mpf("0.3"), 30),
+    "lambert-under-sphere-10deg-above-horizon": lambda: under_sphere(mpf("0.5"), 10),
+    "lambert-under-sphere-in-horizon": lambda: under_sphere(mpf("0.5"), 0),
+    "lambert-under-sphere-10deg-below-horizon": lambda: under_sphere(mpf("0.5"), -10),
+    "lambert-wall-beside-sphere": lambda: under_sphere(1 / (1 + mpf(2) ** -20), 0),
+}
+
 EXACT = {
+    **ROUND,
     "lambert-in-furnace": lambda: mpf(1) / 2,
     "mirror-in-furnace": lambda: mpf(0.9),
     **{f"phong-10-in-furnace-at-{t}deg": lambda t=t: phong(10, t) for t in (0, 30, 60, 80)},

@@ -13,7 +13,9 @@ from radiokit.contracts.emitter import emitter, list_emitters
 from radiokit.contracts.vectors import as_point, as_unit
 from radiokit.emitters.constant import Constant
 from radiokit.emitters.directional import Directional
+from radiokit.emitters.disk import Disk
 from radiokit.emitters.point import Point
+from radiokit.emitters.sphere import Sphere
 from radiokit.facts.directions import frame, to_local, unit
 from radiokit.facts.errors import ParameterError, RadiokitError, UnknownNameError
 from radiokit.measure.quadrature import box
@@ -214,6 +216,9 @@ def test_bad_vectors_are_named(bad):
     for make, name in (
         (lambda: Point(position=bad, intensity=1), "position"),
         (lambda: Directional(direction=bad, irradiance=1), "direction"),
+        (lambda: Sphere(center=bad, radius=1, radiance=1), "center"),
+        (lambda: Disk(center=bad, normal=(0, 0, 1), radius=1, radiance=1), "center"),
+        (lambda: Disk(center=(0, 0, 1), normal=bad, radius=1, radiance=1), "normal"),
         (lambda: as_point("here", bad), "here"),
         (lambda: Receiver(normal=bad), "normal"),
         (lambda: irradiance(Constant(), position=bad), "position"),
@@ -229,6 +234,7 @@ def test_zero_directions_are_refused():
     for make in (
         lambda: Directional(direction=(0, 0, 0), irradiance=1),
         lambda: Constant(normal=(0, 0, 0)),
+        lambda: Disk(center=(0, 0, 1), normal=(0, 0, 0), radius=1, radiance=1),
         lambda: irradiance(Constant(), normal=(0, 0, 0)),
     ):
         with pytest.raises(ParameterError, match="a nonzero vector"):
@@ -241,6 +247,11 @@ def test_bad_strengths_are_refused(bad):
         (lambda: Point(position=(0, 0, 1), intensity=bad), "intensity"),
         (lambda: Directional(direction=(0, 0, 1), irradiance=bad), "irradiance"),
         (lambda: Constant(radiance=bad), "radiance"),
+        (lambda: Sphere(center=(0, 0, 1), radius=bad, radiance=1), "radius"),
+        (lambda: Sphere(center=(0, 0, 1), radius=0.5, radiance=bad), "radiance"),
+        (lambda: Disk(center=(0, 0, 1), normal=(0, 0, 1), radius=bad, radiance=1), "radius"),
+        (lambda: Disk(center=(0, 0, 1), normal=(0, 0, 1), radius=1, radiance=bad), "radiance"),
+        (lambda: Disk(center=(0, 0, 1), normal=(0, 0, 1), radius=1, radiance=1, exponent=bad), "exponent"),
     ):
         with pytest.raises(ParameterError, match=name):
             make()
@@ -273,7 +284,7 @@ def test_delta_lights_have_no_radiance_and_others_no_incident_rays():
 
 
 def test_the_registry_knows_them():
-    assert {"point", "directional", "constant"} <= set(list_emitters())
+    assert {"point", "directional", "constant", "sphere", "disk"} <= set(list_emitters())
     assert emitter("constant", radiance=2) == Constant(radiance=2.0)
     with pytest.raises(UnknownNameError, match="did you mean 'point'"):
         emitter("pont")
