@@ -1,4 +1,4 @@
-"""Gradient sky: from one radiance at the horizon to another at the zenith, along a line or a parabola in cosθ."""
+"""Gradient sky: one radiance at the horizon and one at the zenith, joined by a parabola in cosθ."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Overcast sky: the standard overcast sky of the CIE, three times as bright at the zenith as at the horizon."""
+"""Overcast sky: the standard overcast sky of the CIE, thrice as bright at the zenith as at the horizon."""
 
 from __future__ import annotations
 
