@@ -221,9 +221,9 @@ def _read_numbers(reader: _Reader, keywords: dict[str, str]) -> Photometry:
     if span == (0, 360) and not np.array_equal(table[0], table[-1]):
         line = reader.tokens[-1][0]
         _refuse(line, "the candela at 360°", "what they are at 0°")
-    horizontal, table = _written_out(horizontal, factor * table)
-    if not np.all(np.isfinite(table)):
+    if not math.isfinite(factor * float(table.max())):
         _refuse(reader.end, "a candela value times the multiplier", "finite")
+    horizontal, table = _written_out(horizontal, factor * table)
     return Photometry(vertical, horizontal, table, keywords, watts)
 
 
