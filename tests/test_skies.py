@@ -390,6 +390,7 @@ def test_maps_are_values():
     assert one != Environment(radiance=[[1, 2], [3, 5]])
     assert one != Environment(radiance=[[1, 2], [3, 4]], forward=(0, 1, 0))
     assert one != 1
+    assert "radiance=<2 x 2>" in repr(one)
     again = pickle.loads(pickle.dumps(one))
     assert again == one
     assert not again.radiance.flags.writeable

@@ -85,7 +85,11 @@ class Environment(Emitter):
         return hash(self._key())
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _rebuild, (np.array(self.radiance), self.normal, self.forward)
+        return _rebuild, (type(self), np.array(self.radiance), self.normal, self.forward)
+
+    def __repr__(self) -> str:
+        rows, columns = self.radiance.shape
+        return f"Environment(radiance=<{rows} x {columns}>, normal={self.normal!r}, forward={self.forward!r})"
 
     @cached_property
     def _axes(self) -> FloatArray:
@@ -197,8 +201,8 @@ def _checked_map(value: Any) -> FloatArray:
     return table
 
 
-def _rebuild(radiance: FloatArray, normal: Any, forward: Any) -> Environment:
-    return Environment(radiance=radiance, normal=normal, forward=forward)
+def _rebuild(cls: type[Environment], radiance: FloatArray, normal: Any, forward: Any) -> Environment:
+    return cls(radiance=radiance, normal=normal, forward=forward)
 
 
 def _share(x: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
