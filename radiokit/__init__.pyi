@@ -38,6 +38,7 @@ from .measure.kernels import kernel as kernel
 from .measure.kernels import select as select
 from .measure.twin import Twin as Twin
 from .physics import fresnel as fresnel
+from .physics import view_factor as view_factor
 from .worlds.cases.catalogue import case as case
 from .worlds.cases.catalogue import list_cases as list_cases
 from .worlds.enclosure import enclosure_radiance as enclosure_radiance

@@ -120,6 +120,53 @@ def sky(tilt_deg):
     return latitude * (1 - mpmath.sin(deg(tilt_deg) - mpmath.pi / 2)) / (2 * mpmath.pi)
 
 
+def lobe_of_sky(law, tilt_deg):
+    """ρE/π for ρ = ½ in rings about the zenith: the law L(cosθ) times what a slope sees of each ring."""
+    tilt = deg(tilt_deg)
+
+    def ring(theta):
+        a, b = mpmath.sin(theta) * mpmath.sin(tilt), mpmath.cos(theta) * mpmath.cos(tilt)
+        edge = mpmath.pi if b >= a else mpf(0) if b <= -a else mpmath.acos(-b / a)
+        return law(mpmath.cos(theta)) * mpmath.sin(theta) * 2 * (a * mpmath.sin(edge) + b * edge)
+
+    bend = abs(mpmath.pi / 2 - tilt)
+    ends = [0, bend, mpmath.pi / 2] if tilt and tilt_deg != "90" else [0, mpmath.pi / 2]
+    return mpmath.quad(ring, ends) / (2 * mpmath.pi)
+
+
+def ggx_one_under(law, theta_deg, low=0, share=1):
+    """∫ L(μ) μ/(μ + μo) dμ from ``low`` to 1, or over the share of the azimuth that is lit."""
+    mu = mpmath.cos(deg(theta_deg))
+    return share * mpmath.quad(lambda x: law(x) * x / (x + mu), [low, (low + mpf(1)) / 4 + low / 2, 1])
+
+
+def phong_zenith(law, low=0, share=1):
+    """∫ (n + 2) L(μ) μⁿ⁺¹ dμ for n = 10."""
+    return share * mpmath.quad(lambda x: 12 * law(x) * x**11, [low, 1])
+
+
+def octant(tilt_deg):
+    """ρ/π ∫ 2 (cosθ cosβ − sinθ cosφ sinβ)⁺ dω over an octant; the horizon is at cotθ = cosφ tanβ."""
+    tilt = deg(tilt_deg)
+
+    def meridian(phi):
+        edge = mpmath.atan2(mpmath.cos(tilt), mpmath.cos(phi) * mpmath.sin(tilt))
+        down, out = mpmath.sin(edge) ** 2 / 2, (edge - mpmath.sin(edge) * mpmath.cos(edge)) / 2
+        return mpmath.cos(tilt) * down - mpmath.sin(tilt) * mpmath.cos(phi) * out
+
+    return mpmath.quad(meridian, [0, mpmath.pi / 2]) / mpmath.pi
+
+
+def spot_law(cosine, outer_deg):
+    """The smooth step of a cone whose intensity is full on the axis alone."""
+    t = max(mpf(0), (cosine - mpmath.cos(deg(outer_deg))) / (1 - mpmath.cos(deg(outer_deg))))
+    return t * t * (3 - 2 * t)
+
+
+def overcast(c):
+    return (1 + 2 * c) / 3
+
+
 def series(reflectance):
     """Σ ρᵏ for the binary number that the float is."""
     return mpmath.nsum(lambda k: mpf(reflectance) ** k, [0, mpmath.inf])
@@ -234,6 +281,41 @@ EXACT = {
     "ggx-1-under-point": lambda: mpf(8) / 25 * mpf("0.8") / (2 * mpmath.pi * mpf("1.6")),
     **{f"ggx-{a}-highlight-at-{t}deg": lambda a=a, t=t: highlight(a, t)
        for a, t in (("0.3", 60), ("0.01", 45), ("0.1", 89))},
+    **{f"lambert-under-overcast-sky-tilted-{t}deg": lambda t=t: lobe_of_sky(overcast, t)
+       for t in ("0", "30", "60", "90", "150")},
+    **{f"lambert-under-linear-sky-tilted-{t}deg": lambda t=t: lobe_of_sky(lambda c: 3 - 2 * c, t)
+       for t in ("0", "45", "90")},
+    **{f"lambert-under-quadratic-sky-tilted-{t}deg": lambda t=t: lobe_of_sky(lambda c: 1 + (c + c * c) / 2, t)
+       for t in ("0", "60", "120")},
+    **{f"lambert-between-sky-and-ground-tilted-{t}deg": lambda t=t: (
+           lobe_of_sky(lambda c: 1, t) + lobe_of_sky(lambda c: mpf(1) / 5, str(180 - int(t))))
+       for t in ("0", "45", "90", "135")},
+    "mirror-under-overcast-sky": lambda: mpf("0.9") * overcast(mpf(1) / 2),
+    "phong-10-under-overcast-sky": lambda: phong_zenith(overcast),
+    **{f"ggx-1-under-overcast-sky-at-{t}deg": lambda t=t: ggx_one_under(overcast, t) for t in (0, 60)},
+    "ggx-1-under-quadratic-sky": lambda: ggx_one_under(lambda c: c * c, 60),
+    "lambert-in-furnace-map": lambda: mpf(1) / 2,
+    "lambert-under-bright-cell": lambda: (
+        mpmath.quad(lambda a: mpmath.cos(a) * mpmath.sin(a), [deg(45), deg(90)])
+    ),
+    "phong-10-under-bright-cell": lambda: phong_zenith(lambda c: 8, mpmath.cos(deg(45)), mpf(1) / 8),
+    "ggx-1-under-bright-cell": lambda: (
+        ggx_one_under(lambda c: 1, 60) - ggx_one_under(lambda c: 1, 60, mpmath.cos(deg(45)))
+    ),
+    **{f"lambert-under-bright-octant-tilted-{t}deg": lambda t=t: octant(t) for t in (0, 30, 60)},
+    "lambert-on-axis-of-spot": lambda: mpf(5) / 8 / mpmath.pi * spot_law(mpf(1), 45),
+    "lambert-in-falloff-of-spot": lambda: spot_law(mpf("0.8"), 90) / 5 * mpf("0.8") / (2 * mpmath.pi),
+    "lambert-outside-of-spot": lambda: spot_law(mpf("0.6"), 45),
+    "ggx-1-in-falloff-of-spot": lambda: (
+        spot_law(mpf("0.8"), 90) / 5 * mpf("0.8") / (2 * mpmath.pi * mpf("1.6"))
+    ),
+    **{f"lambert-{place}-of-luminaire": lambda cd=cd: (
+           mpf(cd) / 683 / 2 * mpmath.cos(deg(45)) / (2 * mpmath.pi))
+       for place, cd in (("in-right-lobe", 1366), ("in-left-lobe", 1366), ("between-lobes", 683))},
+    "lambert-at-nadir-of-luminaire": lambda: mpf(0),
+    "ggx-1-in-lobe-of-luminaire": lambda: (
+        mpmath.cos(deg(45)) / (2 * mpmath.pi * (1 + mpmath.cos(deg(45))))
+    ),
     **{f"lambert-enclosure-{r}": lambda r=r: series(float(r)) for r in ("0.1", "0.5", "0.9")},
 }  # fmt: skip
 NUMERIC = {

@@ -67,6 +67,10 @@ class Emitter(ABC):
         """Return the closed-form irradiance [W m⁻²] on a receiver, or None where there is none."""
         return None
 
+    def flux(self) -> Estimate | None:
+        """Return the radiant flux Φ [W] that the source sends out; None for one infinitely far away."""
+        return None
+
 
 REGISTRY: Registry[Emitter] = Registry("emitter", "radiokit.emitters", Emitter, "radiokit.emitters")
 
