@@ -1,8 +1,8 @@
 """Axial moments: a power of a cosine over the directions to a polygon, the light that a Phong lobe receives.
 
 A recurrence lowers the exponent by two at a time and ends at the edges. Its terms are up to n times as large
-as what is left of them, and larger yet where the polygon is small. Here it runs at the precision that it takes,
-so that every digit of the result is right; the cost grows as n times the number of edges.
+as what is left of them, and larger yet where the polygon is small. Here it runs at the precision that it
+takes, so that every digit of the result is right; the cost grows as n times the number of edges.
 """
 
 from __future__ import annotations

@@ -229,7 +229,8 @@ def above(points: list[list[Any]], normal: Any) -> list[list[Any]]:
     """Return the part of a polygon with p·n ≥ 0, for any type of number; empty where nothing is above.
 
     Source: Sutherland, Hodgman (1974), Reentrant polygon clipping, doi:10.1145/360767.360802. A concave
-    polygon that falls apart keeps edges to and fro along the cut, which cancel in every integral along the boundary.
+    polygon that falls apart keeps edges to and fro along the cut, which cancel in every integral along the
+    boundary.
 
     >>> above([[1, 0, 1], [-1, 0, 1], [0, 0, -1]], [0, 0, 1])
     [[0.5, 0.0, 0.0], [1, 0, 1], [-1, 0, 1], [-0.5, 0.0, 0.0]]
