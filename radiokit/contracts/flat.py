@@ -133,9 +133,8 @@ class FlatEmitter(Emitter):
         self._check_off(position)
         found = polygon.irradiance(self.corners, np.asarray(position, dtype=float), np.asarray(normal))
         value = found.value * self.radiance
-        return Estimate(
-            value, found.error * self.radiance + np.spacing(value), "rounding", method="closed form"
-        )
+        error = found.error * self.radiance + (float(np.spacing(value)) if value else 0.0)
+        return Estimate(value, error, "rounding", method="closed form")
 
     def _check_off(self, position: FloatArray) -> None:
         offsets = self.corners - position

@@ -1,12 +1,14 @@
 """Axial moments: a power of a cosine over the directions to a polygon, the light that a Phong lobe receives.
 
-A recurrence lowers the exponent by two at a time and ends at the edges. Its terms are up to n times as large
-as what is left of them, and larger yet where the polygon is small. Here it runs at the precision that it
-takes, so that every digit of the result is right; the cost grows as n times the number of edges.
+A recurrence lowers the exponent by two at a time and ends at the edges, whose terms cancel where the polygon
+is small or the axis points beside it. In float64, at n = 199 and 18° beside the axis, a square of 2 m at 1 m
+has all its digits, one of 2 mm seven, and one of 2 µm three. Here the recurrence runs at the precision that
+it takes, so that every digit of the result is right; the cost grows as n times the number of edges.
 """
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 from typing import Any
 
@@ -190,7 +192,7 @@ def _evaluate(
     import mpmath
 
     if float(solid_angle(corners, origin).value) == 0.0:
-        return rounding(0.0)
+        return rounding(0.0, ulps=0)
 
     def once() -> Any:
         points = seen_from(corners, origin)
@@ -214,9 +216,13 @@ def _checked(vertices: npt.ArrayLike, position: npt.ArrayLike) -> tuple[FloatArr
 
 
 def _exponent(value: Any) -> int:
-    if isinstance(value, bool) or not float(value).is_integer() or not 0 <= value <= LARGEST:
+    try:
+        number = math.nan if isinstance(value, bool) else float(value)
+    except (TypeError, ValueError):
+        number = math.nan
+    if not (number.is_integer() and 0 <= number <= LARGEST):
         raise ParameterError("exponent", value, f"an integer in [0, {LARGEST}]")
-    return int(value)
+    return int(number)
 
 
 def _axis(name: str, value: npt.ArrayLike) -> FloatArray:

@@ -90,9 +90,13 @@ def solid_angle(vertices: FloatArray, position: FloatArray) -> Estimate:
         error = (doubt * np.abs(below) + 8 * _EPS * volume * np.abs(det)) / square
         bound = 2 * float(np.sum(error)) + 4 * _EPS * float(np.sum(np.abs(np.arctan2(det, below))))
         if bound <= TRUSTED * abs(value):
-            return Estimate(value, bound, "rounding", method="closed form") if value > 0 else rounding(0.0)
+            return (
+                Estimate(value, bound, "rounding", method="closed form")
+                if value > 0
+                else rounding(0.0, ulps=0)
+            )
     if _in_plane(vertices, position):
-        return rounding(0.0)
+        return rounding(0.0, ulps=0)
 
     def precisely() -> tuple[Any, Any]:
         import mpmath
@@ -137,13 +141,17 @@ def irradiance(vertices: FloatArray, position: FloatArray, normal: FloatArray) -
     r = np.sqrt(dot(v, v))
     height = dot(v, normal)
     if np.all(height < -8 * _EPS * r):
-        return rounding(0.0)
+        return rounding(0.0, ulps=0)
     if np.all(height > 8 * _EPS * r):
         value, bound = _whole(v, d, r, normal)
         if bound <= TRUSTED * abs(value):
-            return Estimate(value, bound, "rounding", method="closed form") if value > 0 else rounding(0.0)
+            return (
+                Estimate(value, bound, "rounding", method="closed form")
+                if value > 0
+                else rounding(0.0, ulps=0)
+            )
     if _in_plane(vertices, position):
-        return rounding(0.0)
+        return rounding(0.0, ulps=0)
 
     def precisely() -> tuple[Any, Any]:
         import mpmath
@@ -214,7 +222,8 @@ def refined(compute: Callable[[], tuple[Any, Any]], digits: tuple[int, ...] = DI
                 nearest = max(0.0, float(value))
                 spread = 0.0 if value < 0 else float(bound)
                 break
-    return Estimate(nearest, spread + float(np.spacing(nearest)), "rounding", method="closed form")
+    error = spread + (float(np.spacing(nearest)) if nearest else 0.0)
+    return Estimate(nearest, error, "rounding", method="closed form")
 
 
 def seen_from(vertices: FloatArray, position: FloatArray) -> list[list[Any]]:

@@ -49,8 +49,8 @@ _EDGES = (
 )
 _MOMENT = (
     r"$L_o = L \rho \frac{n + 2}{2\pi} \int (r \cdot \omega)^n\, n_z \cdot \omega\, d\omega$, Arvo's "
-    r"double-axis moment of the part above the horizon with $r \cdot \omega > 0$; rings about $r$, with $\int \sin^2 "
-    r"\cos^n$ as an incomplete beta function, give the same digits: "
+    r"double-axis moment of the part above the horizon with $r \cdot \omega > 0$; rings about $r$, with "
+    r"$\int \sin^2 \cos^n$ as an incomplete beta function, give the same digits: "
 )
 
 
