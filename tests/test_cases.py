@@ -182,7 +182,8 @@ def rings(points, pole, ring):
 
 
 def numbers(vectors):
-    return [[mpf(float(x)) for x in v] for v in vectors]
+    """The decimal numbers that a case states, (0.6, 0, 0.8) of length 1 exactly."""
+    return [[mpf(repr(x)) for x in v] for v in vectors]
 
 
 def shadow(*lights, normal=(0.0, 0.0, 1.0)):

@@ -409,7 +409,7 @@ BAD = {
     "a line": ([[0, 0, 0], [1, 1, 1], [2, 2, 2]], "area"),
     "bent": ([[0, 0, 0], [1, 0, 0], [1, 1, 0.5], [0, 1, 0]], r"in the plane"),
     "spike": ([[0, 0, 0], [1, 0, 0], [3, 0, 0], [1, 0, 0.0], [0, 1, 0]], r"vertices\[2\]"),
-    "crossing": ([[0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 2, 0]], r"vertices\[0\] .* the one from vertices\[2\]"),
+    "crossing": ([[0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 2, 0]], r"vertices\[0\] .* one from vertices\[2\]"),
     "touching": ([[0, 0, 0], [4, 0, 0], [4, 2, 0], [2, 0, 0], [0, 2, 0]], r"vertices\[0\] .* meets no other"),
 }  # fmt: skip
 
