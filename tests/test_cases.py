@@ -182,20 +182,24 @@ def rings(points, pole, ring):
 
 
 def numbers(vectors):
-    """The decimal numbers that a case states, (0.6, 0, 0.8) of length 1 exactly."""
-    return [[mpf(repr(x)) for x in v] for v in vectors]
+    return [[mpf(x) for x in v] for v in vectors]
+
+
+def decimal(direction):
+    """The direction as a case states it: (0.6, 0, 0.8) is of length 1 exactly."""
+    return [mpf(repr(x)) for x in direction]
 
 
 def shadow(*lights, normal=(0.0, 0.0, 1.0)):
     """ρ/π times the area of the lights' shadow on the base of the hemisphere (Nusselt's analogue)."""
-    (n,) = numbers([normal])
+    n = decimal(normal)
     parts = [above(numbers(vertices), n) for vertices in lights]
     return sum(rings(p, n, lambda c, s, w: s * s / 2) for p in parts if p) / (2 * mpmath.pi)
 
 
 def lobe(vertices, n, wo):
     """(n + 2)/2π ∫ cosⁿα cosθ dω in rings about the mirror direction, in the light and above the horizon."""
-    (w,) = numbers([wo])
+    w = decimal(wo)
     mirror = [-w[0], -w[1], w[2]]
     points = above(above(numbers(vertices), [0, 0, 1]), mirror)
 
