@@ -273,7 +273,8 @@ def test_delta_lights_have_no_radiance_and_others_no_incident_rays():
 
 
 def test_the_registry_knows_them():
-    assert {"point", "directional", "constant"} <= set(list_emitters())
+    known = {"point", "directional", "constant", "polygon", "rectangle", "triangle"}
+    assert known <= set(list_emitters())
     assert emitter("constant", radiance=2) == Constant(radiance=2.0)
     with pytest.raises(UnknownNameError, match="did you mean 'point'"):
         emitter("pont")

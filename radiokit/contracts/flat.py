@@ -103,12 +103,15 @@ class FlatEmitter(Emitter):
             part = np.array(polygon.above((triangle - position).tolist(), normal.tolist()))
             for k in range(1, len(part) - 1):
                 warp = UniformSphericalTriangle(vertices=part[[0, k, k + 1]])
+                size = warp.solid_angle
+                # A direction is known to an eps, and so is a cosine, however small it is.
+                precision = 8 * _EPS / max(float(np.max(warp.directions @ normal)), _EPS)
                 if len(part) == 3 and np.array_equal(part, triangle - position):
                     size = float(polygon.solid_angle(triangle, position).value)  # with all its digits
-                else:
-                    size = warp.solid_angle
+                elif size > 0.0:  # where the horizon cuts is rounded
+                    precision += 8 * _EPS * warp.perimeter / size
                 if size > 0.0:
-                    found.append(_Piece(radiance=self.radiance, warp=warp, size=size))
+                    found.append(_Piece(radiance=self.radiance, warp=warp, size=size, precision=precision))
         return found
 
     def solid_angle(self, position: FloatArray) -> Estimate:
@@ -224,6 +227,7 @@ class _Piece(Emitter):
     radiance: float
     warp: UniformSphericalTriangle
     size: float
+    precision: float
 
     def radiance_from(self, direction: FloatArray, position: FloatArray) -> FloatArray:
         """Return L: only its own directions are asked about."""

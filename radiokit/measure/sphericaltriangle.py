@@ -87,6 +87,17 @@ class UniformSphericalTriangle(Warp):
         whole = float(self._angle(np.array(half[0]), np.array(half[1])))
         object.__setattr__(self, "solid_angle", whole)
 
+    @property
+    def directions(self) -> FloatArray:
+        """The directions (3, 3) of the corners."""
+        return self._u
+
+    @property
+    def perimeter(self) -> float:
+        """The sum of the chords between the corners' directions, about that of the sides [rad] if small."""
+        sides = np.roll(self._u, -1, axis=0) - self._u
+        return float(np.sum(np.sqrt(dot(sides, sides))))
+
     def _angle(self, sine: FloatArray, cosine: FloatArray) -> FloatArray:
         """Return the solid angle of abc', with tan(t/2) = sine/cosine."""
         height, lean, base = self._form

@@ -146,7 +146,9 @@ def _over_piece(
     found = box(integrand, (0.0, 0.0), (1.0, 1.0), rtol=aim, kinks=kinks)
     converged = bool(np.all(found.error <= rtol * np.abs(found.value)))
     note = "" if converged else found.note
-    return replace(found, method=f"{found.method} over the light", converged=converged, note=note)
+    error = found.error + getattr(light, "precision", 0.0) * np.abs(found.value)
+    method = f"{found.method} over the light"
+    return replace(found, error=error, method=method, converged=converged, note=note)
 
 
 def crosses_horizon(light: Emitter, receiver: Receiver) -> bool:
