@@ -256,6 +256,130 @@ ROUND = {
     "lambert-wall-beside-sphere": lambda: under_sphere(1 / (1 + mpf(2) ** -20), 0),
 }
 
+
+def dot(a, b):
+    return mpmath.fsum(x * y for x, y in zip(a, b, strict=True))
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def above(points, n):
+    """The part of a polygon on the side of n."""
+    heights, found = [dot(p, n) for p in points], []
+    for k, (p, h) in enumerate(zip(points, heights, strict=True)):
+        if (heights[k - 1] > 0) != (h > 0):
+            share = heights[k - 1] / (heights[k - 1] - h)
+            found.append([a + share * (b - a) for a, b in zip(points[k - 1], p, strict=True)])
+        if h > 0:
+            found.append(p)
+    return found
+
+
+def rings(points, pole, ring):
+    """−∮ ring(cosθ, sinθ, direction across) dφ along a polygon's edges, about a pole."""
+    size = mpmath.sqrt(dot(pole, pole))
+    z = [x / size for x in pole]
+    x = cross([1, 0, 0] if abs(z[0]) < 0.7 else [0, 1, 0], z)
+    size = mpmath.sqrt(dot(x, x))
+    x = [c / size for c in x]
+    y = cross(z, x)
+    local = [[dot(p, axis) for axis in (x, y, z)] for p in points]
+    total = mpf(0)
+    for p, q in zip(local, local[1:] + local[:1], strict=True):
+        start, n = mpmath.atan2(p[1], p[0]), cross(p, q)
+        turn = mpmath.atan2(n[2], p[0] * q[0] + p[1] * q[1])
+        if abs(turn) < mpf(10) ** (5 - mpmath.mp.dps):
+            continue  # along a meridian
+
+        def along(s, start=start, n=n):
+            c, d = mpmath.cos(start + s), mpmath.sin(start + s)
+            cot = -(n[0] * c + n[1] * d) / n[2]
+            sine = 1 / mpmath.sqrt(1 + cot * cot)
+            return ring(cot * sine, sine, [c * a + d * b for a, b in zip(x, y, strict=True)])
+
+        size = max(abs(along(turn * k / 4)) for k in range(5))
+        total -= size * mpmath.quad(lambda s, f=along, size=size: f(s) / size, mpmath.linspace(0, turn, 5))
+    return total
+
+
+def numbers(vectors):
+    return [[mpf(x) for x in v] for v in vectors]
+
+
+def decimal(direction):
+    """The direction as a case states it: (0.6, 0, 0.8) is of length 1 exactly."""
+    return [mpf(repr(x)) for x in direction]
+
+
+def shadow(*lights, normal=(0.0, 0.0, 1.0)):
+    """ρ/π times the area of the lights' shadow on the base of the hemisphere (Nusselt's analogue)."""
+    n = decimal(normal)
+    parts = [above(numbers(vertices), n) for vertices in lights]
+    return sum(rings(p, n, lambda c, s, w: s * s / 2) for p in parts if p) / (2 * mpmath.pi)
+
+
+def lobe(vertices, n, wo):
+    """(n + 2)/2π ∫ cosⁿα cosθ dω in rings about the mirror direction, in the light and above the horizon."""
+    w = decimal(wo)
+    mirror = [-w[0], -w[1], w[2]]
+    points = above(above(numbers(vertices), [0, 0, 1]), mirror)
+
+    def ring(cosine, sine, across):
+        rest = mpmath.betainc(mpf(3) / 2, mpf(n + 1) / 2, 0, sine * sine) / 2
+        return mirror[2] * (1 - cosine ** (n + 2)) / (n + 2) + across[2] * rest
+
+    return (n + 2) / (2 * mpmath.pi) * rings(points, mirror, ring)
+
+
+def level(points):
+    """A light at height 1 that shines down, from corners counter-clockwise as seen from above."""
+    return [(x, y, 1.0) for x, y in reversed(points)]
+
+
+def block(x0, x1, y0, y1):
+    return level([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
+
+
+def wall(low, high):
+    return [(1, 1, low), (1, -1, low), (1, -1, high), (1, 1, high)]
+
+
+_STAR = [(4, 0), (1, 1), (0, 4), (-1, 1), (-4, 0), (-1, -1), (0, -4), (1, -1)]
+STAR = level([(x / 4, y / 4) for x, y in _STAR])
+ELL = level([(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)])
+PANEL = block(-0.5, 1.5, -1, 1)
+POLYGONS = {
+    **{
+        f"lambert-under-square-of-{text}": lambda a=a: shadow(block(-a, a, -a, a))
+        for text, a in (("2µm", 1e-6), ("2cm", 0.01), ("50cm", 0.25), ("2m", 1.0), ("20km", 1e4),
+                        ("200000km", 1e8))
+    },
+    "lambert-under-ell": lambda: (2 * shadow(block(-2, 2, -1, 1)) - shadow(block(-1, 1, -1, 1))) / 4,
+    "lambert-under-octant": lambda: mpf(1) / 8,
+    "lambert-beside-wall": lambda: shadow(wall(-1, 1)),
+    "lambert-under-light-behind": lambda: mpf(0),
+    "lambert-in-plane-of-light": lambda: mpf(0),
+    "lambert-in-box-of-light": lambda: mpf(1) / 2,
+    "lambert-under-square-tilted-a-little": lambda: shadow(PANEL, normal=(0.28, 0, 0.96)),
+    "lambert-under-square-tilted-much": lambda: shadow(PANEL, normal=(0.6, 0.64, 0.48)),
+    "lambert-under-square-tilted-upright": lambda: shadow(PANEL, normal=(1, 0, 0)),
+    "lambert-under-square-tilted-down": lambda: shadow(PANEL, normal=(0.6, 0, -0.8)),
+    "lambert-under-star": lambda: shadow(STAR),
+    "lambert-under-triangle-cut": lambda: shadow([(1, -1, -1), (1, 0, 1.5), (1, 2, -0.5)]),
+    "lambert-under-triangle-touching-horizon": lambda: shadow([(1, 0, 0), (1, -0.5, 1), (1, 0.5, 1)]),
+    "lambert-under-sliver": lambda: shadow([(-1, -0.5, 1), (0, 0.25 + 2.0**-20, 1), (1, 1, 1)]),
+    "lambert-beside-skirting": lambda: shadow(wall(0, 2.0**-10)),
+    **{f"phong-{n}-under-octant": lambda: mpf(1) / 4 for n in (1, 20, 200)},
+    "phong-1-under-square": lambda: lobe(PANEL, 1, (-0.6, 0, 0.8)),
+    "phong-20-under-square": lambda: lobe(PANEL, 20, (0.6, 0, 0.8)),
+    "phong-200-under-square": lambda: lobe(PANEL, 200, (0, 0.6, 0.8)),
+    "phong-50-under-ell": lambda: lobe(ELL, 50, (-0.48, -0.6, 0.64)),
+    "phong-10-under-wall": lambda: lobe(wall(-1, 1), 10, (-0.96, 0, 0.28)),
+}  # fmt: skip
+
+
 EXACT = {
     **ROUND,
     "lambert-in-furnace": lambda: mpf(1) / 2,
@@ -325,7 +449,7 @@ NUMERIC = {
 
 
 def test_every_case_is_derived_again():
-    assert {item.name for item in CASES} == EXACT.keys() | NUMERIC.keys()
+    assert {item.name for item in CASES} == EXACT.keys() | NUMERIC.keys() | POLYGONS.keys()
 
 
 @pytest.mark.parametrize("name", sorted(EXACT))
@@ -336,6 +460,17 @@ def test_exact_values_at_50_digits(name):
             assert case(name).exact == 0.0
         else:
             assert ulps(case(name).exact, truth) <= 4
+
+
+@pytest.mark.parametrize("name", sorted(POLYGONS))
+def test_polygons_at_30_digits(name):
+    """By their shadows and by rings about the mirror direction: no sum over edges of the cases' formula."""
+    with mpmath.workdps(30):
+        truth = POLYGONS[name]()
+        assert ulps(case(name).exact, truth) <= 4
+        quoted = case(name).derivation.rsplit(" 0.", 1)
+        if len(quoted) == 2:
+            assert abs(truth - mpf("0." + quoted[1].rstrip("."))) < mpf(10) ** -21
 
 
 @pytest.mark.parametrize("name", sorted(NUMERIC))

@@ -287,6 +287,8 @@ def test_the_registry_knows_them():
     assert {"point", "directional", "constant", "sphere", "disk"} <= set(list_emitters())
     assert {"point", "directional", "constant", "spot", "goniometric"} <= set(list_emitters())
     assert {"sky_overcast", "sky_gradient", "environment"} <= set(list_emitters())
+    known = {"point", "directional", "constant", "polygon", "rectangle", "triangle"}
+    assert known <= set(list_emitters())
     assert emitter("constant", radiance=2) == Constant(radiance=2.0)
     with pytest.raises(UnknownNameError, match="did you mean 'point'"):
         emitter("pont")

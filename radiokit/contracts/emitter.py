@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -58,6 +59,14 @@ class Emitter(ABC):
         else. Quadrature takes its coordinates from it.
         """
         return None
+
+    def pieces(self, position: FloatArray, normal: FloatArray) -> Sequence[Emitter]:
+        """Return lights that together are this one, as far as it is above the receiver's horizon.
+
+        Quadrature sums over them, each in the square from which it is sampled: a light with corners gives
+        parts on which that is smooth. The default is the light itself.
+        """
+        return (self,)
 
     @abstractmethod
     def solid_angle(self, position: FloatArray) -> Estimate:

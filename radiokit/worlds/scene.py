@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import operator
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial, reduce
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,8 @@ from radiokit.measure.quadrature import box
 __all__ = ["Receiver", "check_emitter", "irradiance", "over_light", "solid_angle"]
 
 FloatArray = npt.NDArray[np.float64]
+
+_ROUNDING = 1e-14  # of the heights of a piece that ends at the horizon
 
 
 @dataclass(frozen=True)
@@ -112,26 +115,40 @@ def irradiance(
     if found is not None:
         return replace(found, seconds=time.perf_counter() - start)
 
-    def arriving(u: FloatArray) -> FloatArray:
-        wi, density = light.sample(u, receiver.origin)
+    def arriving(piece: Emitter, u: FloatArray) -> FloatArray:
+        wi, density = piece.sample(u, receiver.origin)
         cosine = np.maximum(wi @ receiver.axis, 0.0)
-        value = light.radiance_from(wi, receiver.origin) * cosine
+        value = piece.radiance_from(wi, receiver.origin) * cosine
         return np.divide(value, density, out=np.zeros_like(value), where=density > 0)
 
     return over_light(arriving, light, receiver, rtol)
 
 
 def over_light(
+    integrand: Callable[[Emitter, FloatArray], Any], light: Emitter, receiver: Receiver, rtol: float
+) -> Estimate:
+    """Integrate over a light, piece by piece, with points in the square from which a piece is sampled."""
+    pieces = light.pieces(receiver.origin, receiver.axis)
+    if not pieces:
+        nothing = np.zeros_like(np.asarray(integrand(light, np.full((1, 2), 0.5)))[0])[()]
+        return Estimate(nothing, nothing, "truncation", 1, method="none of the light is above the horizon")
+    found = [_over_piece(partial(integrand, piece), piece, receiver, rtol) for piece in pieces]
+    return reduce(operator.add, found)
+
+
+def _over_piece(
     integrand: Callable[[FloatArray], Any], light: Emitter, receiver: Receiver, rtol: float
 ) -> Estimate:
-    """Integrate over the square from which a light is sampled, aware of the kink that its setting makes."""
+    """Integrate over the square of a single piece, aware of the kink that its setting makes."""
     kinks = crosses_horizon(light, receiver)
     # Adaptive cubature stops as soon as it is near the tolerance: aim below it, then judge by it.
     aim = rtol / 4 if kinks else rtol
     found = box(integrand, (0.0, 0.0), (1.0, 1.0), rtol=aim, kinks=kinks)
     converged = bool(np.all(found.error <= rtol * np.abs(found.value)))
     note = "" if converged else found.note
-    return replace(found, method=f"{found.method} over the light", converged=converged, note=note)
+    error = found.error + getattr(light, "precision", 0.0) * np.abs(found.value)
+    method = f"{found.method} over the light"
+    return replace(found, error=error, method=method, converged=converged, note=note)
 
 
 def crosses_horizon(light: Emitter, receiver: Receiver) -> bool:
@@ -140,7 +157,7 @@ def crosses_horizon(light: Emitter, receiver: Receiver) -> bool:
     grid = np.stack(np.meshgrid(x, x, indexing="ij"), axis=-1).reshape(-1, 2)
     towards, _ = light.sample(grid, receiver.origin)
     height = towards @ receiver.axis
-    return bool(np.any(height > 0) and np.any(height < 0))
+    return bool(np.any(height > _ROUNDING) and np.any(height < -_ROUNDING))
 
 
 def solid_angle(emitter: Emitter, *, position: npt.ArrayLike = (0.0, 0.0, 0.0)) -> Estimate:

@@ -166,7 +166,11 @@ class Term:
         a wrong value. A lattice in the squares of both the light and the material sees such a lobe.
         """
         start = time.perf_counter()
-        found = over_light(self._from_light, self.light, self.receiver, rtol)
+
+        def of(piece: Emitter, u: FloatArray) -> FloatArray:
+            return replace(self, light=piece)._from_light(u)
+
+        found = over_light(of, self.light, self.receiver, rtol)
         values = self._both(kronecker(_GUARD, 4))
         means = values.reshape(16, -1, *self.shape).mean(axis=1)
         guard, spread = means.mean(axis=0), means.std(axis=0, ddof=1) / np.sqrt(len(means))
