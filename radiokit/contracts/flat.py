@@ -105,7 +105,8 @@ class FlatEmitter(Emitter):
                 warp = UniformSphericalTriangle(vertices=part[[0, k, k + 1]])
                 size = warp.solid_angle
                 # A direction is known to an eps, and so is a cosine, however small it is.
-                precision = 8 * _EPS / max(float(np.max(warp.directions @ normal)), _EPS)
+                middle = warp.sample(np.array([[0.5, 0.5]]))[0]
+                precision = 8 * _EPS / max(float(middle @ normal), _EPS)
                 if len(part) == 3 and np.array_equal(part, triangle - position):
                     size = float(polygon.solid_angle(triangle, position).value)  # with all its digits
                 elif size > 0.0:  # where the horizon cuts is rounded

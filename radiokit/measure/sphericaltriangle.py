@@ -88,11 +88,6 @@ class UniformSphericalTriangle(Warp):
         object.__setattr__(self, "solid_angle", whole)
 
     @property
-    def directions(self) -> FloatArray:
-        """The directions (3, 3) of the corners."""
-        return self._u
-
-    @property
     def perimeter(self) -> float:
         """The sum of the chords between the corners' directions, about that of the sides [rad] if small."""
         sides = np.roll(self._u, -1, axis=0) - self._u
