@@ -25,10 +25,13 @@ from radiokit.measure.statistics import sidak
 SOME = ("lambert", "mirror", "thin_slab", "phong", "blinn_phong", "ggx")
 """Models of every kind of finding, quickly judged; the command ``radiokit validate`` judges all of them."""
 
+CASES = rk.list_cases()[::6]
+"""Every sixth case; ``tests/test_cases.py`` asks all of them by every method."""
+
 
 @pytest.fixture(scope="module")
 def found():
-    return validate(names=(*SOME, *rk.list_cases()))
+    return validate(names=(*SOME, *CASES))
 
 
 def test_everything_holds(found):
@@ -44,7 +47,8 @@ def test_every_model_and_every_method_of_every_case_is_there(found):
     assert set(cases) == {(name, method) for name in rk.list_cases() for method in rk.case(name).methods}
     judged = [(report.subject, report.parameters) for report in found.models]
     assert judged == [(name, rk.bsdf(name, **values).parameters()) for name, values in models if name in SOME]
-    assert [(row.case, row.method) for row in found.cases] == cases
+    asked = [(row.case, row.method) for row in found.cases]
+    assert asked == [pair for pair in cases if pair[0] in CASES]
     with pytest.raises(UnknownNameError, match="unknown model or case 'gxg'; did you mean 'ggx'"):
         everything(["gxg"])
 
@@ -73,7 +77,7 @@ def test_bounds_hold_with_nothing_to_spare_but_rounding(found):
 
 def test_the_findings_do_not_depend_on_the_workers(found):
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as executor:
-        again = validate(names=(*SOME, *rk.list_cases()), executor=executor, workers=2)
+        again = validate(names=(*SOME, *CASES), executor=executor, workers=2)
 
     def essence(run):
         rows = [(row.case, row.method, row.verdict.estimate.value) for row in run.cases]
