@@ -69,11 +69,11 @@ def kinked(
     for curve in curves:
         s, _ = _panels(wo, width, AZIMUTHS, None, False, _turns((curve,), wo))
         x = _radius(curve, wo, width, s)
-        inside = (x > 0) & (x < 1)
-        if not np.any(inside):
+        inside = np.flatnonzero((x > 0) & (x < 1))
+        if not len(inside):
             continue
         if curve is not CURVES[0]:
-            inside = np.flatnonzero(inside)[:: -(-int(np.sum(inside)) // FEW)]
+            inside = inside[:: -(-len(inside) // FEW)]
         s, x = s[inside], x[inside]
         x = x + shift[:, None] * np.minimum(x, 1 - x)
         wi, weight, _ = slope_map(wo, width, x, s)
