@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass, replace
+from functools import partial
 
 import mpmath
 import numpy as np
 import pytest
 import sympy
 
+from radiokit.bsdfs.beckmann import Beckmann
 from radiokit.bsdfs.ggx import GGX
 from radiokit.bsdfs.lambert import Lambert
 from radiokit.bsdfs.mirror import Mirror
 from radiokit.bsdfs.phong import Phong
-from radiokit.contracts.albedo import albedo
+from radiokit.contracts.albedo import albedo, directional_albedo
 from radiokit.contracts.bsdf import REGISTRY
 from radiokit.contracts.parameters import Parameter
 from radiokit.faces.cli import main
@@ -238,11 +240,35 @@ def test_rows_hold_for_models_with_and_without_a_closed_form():
 
 
 def test_a_kink_is_followed():
-    """Phong of exponent 1 ends with a kink: quadrature says that it is not there yet, and the truth is."""
+    """Phong of exponent 1 ends with a kink: a rule that knows nothing of it says that it is not there yet."""
     row = albedo_row(Phong(exponent=1.0), 60.0)
-    assert row.truth.startswith("0.6089977810442294")
+    assert row.truth.startswith("0.60899778104422")
+    assert row.outcome is Outcome.HOLDS
+    plain = partial(directional_albedo, max_evaluations=4000)
+    row = albedo_row(Phong(exponent=1.0), 60.0, integrate=plain)
     assert row.outcome is Outcome.INCONCLUSIVE
     assert not row.converged
+
+
+def test_crossing_kinks_are_followed():
+    """The walls of V-grooves have three, which meet where the half vector's slope and its lean are 1."""
+    wo = spherical_to_cartesian(np.radians(60.0), 0.4)
+    chart = slope_chart(0.5, np.sqrt(0.75), 1.0)
+    side = Side(Beckmann(alpha=0.6, masking="v-groove").symbolic(), wo, chart, 1.0, cut=True)
+    meeting = np.arccos(np.arcsinh(1.0) / np.arcsinh(np.sqrt(3.0))) / np.pi
+    assert min(abs(s - meeting) for s in side.lines[1].breaks[0]) < 1e-8
+    rough, fine = (side.planned(1, Rule(n, n, eased=True, midpoints=False))[0] for n in (48, 64))
+    assert rough == pytest.approx(fine, rel=1e-11)
+
+
+def test_a_twin_that_divides_by_the_slope_of_wo_is_seen_from_beside_the_normal():
+    row = albedo_row(Beckmann(alpha=0.3), 0.0)
+    assert row.outcome is Outcome.HOLDS
+    assert row.truth.startswith("0.99971315435138638")
+
+
+def test_rounding_that_a_narrow_grazing_lobe_magnifies_does_not_hide_its_truth():
+    assert albedo_row(Beckmann(alpha=1e-3), 85.0).outcome is Outcome.HOLDS
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.box import bent, box
 from radiokit.measure.converge import GK21, ROUNDING, Integrand, RuleSum, adaptive, apply_rule, converge
+from radiokit.measure.curves import CURVES, Curve
 from radiokit.measure.lattice import kronecker
 from radiokit.measure.polar import POLAR_SIZES, polar_rule
 from radiokit.measure.ridge import Ridge, find_ridge
@@ -152,10 +153,17 @@ def hemisphere(
             original = integrand
             integrand = lambda w: original(turned(w))  # noqa: E731
     sides = 1 if symmetric else 2
-    cut, scan, ridge = False, None, None
+    curves: tuple[Curve, ...] = ()
+    scan, ridge = None, None
     if max_evaluations - spent > 2 * SCAN:
         if not smooth:
-            cut, looked = kinked(integrand, wo, core)
+            curves, looked = kinked(integrand, wo, core)
+            if not curves and core >= BROAD:
+                curves, more = kinked(lambda w: integrand(turned(w)), wo, core, CURVES[-1:])
+                looked += more
+                if curves:  # a lobe around wo that is too wide to be seen as one
+                    straight = integrand
+                    integrand = lambda w: straight(turned(w))  # noqa: E731
             scan = _scan(integrand, wo, core)
             spent += SCAN + looked
             ridge = None if symmetric else scan.ridge
@@ -163,12 +171,12 @@ def hemisphere(
             ridge = _scan(integrand, wo, core, LOOK).ridge
             spent += LOOK
     steep = wo[2] > STEEP and ridge is not None and ridge.ratio < THIN
-    cut = cut or steep
+    cut = bool(curves) or steep
     sizes = SPLIT_SIZES if cut else SLOPE_SIZES
 
     def rule(n: tuple[int, int], factor: float) -> tuple[FloatArray, FloatArray]:
         if cut:
-            return split_rule(wo, width * factor, n, ridge=ridge, symmetric=symmetric)
+            return split_rule(wo, width * factor, n, ridge=ridge, symmetric=symmetric, curves=curves)
         return slope_rule(wo, width * factor, n, symmetric=symmetric)
 
     most = min(max_evaluations, max(RULES, max_evaluations // 4))  # the rest is for refinement

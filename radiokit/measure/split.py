@@ -1,4 +1,4 @@
-"""Split: slope-space rules cut at the circle cosθi = cosθo, where max(cosθi, cosθo) has its kink."""
+"""Split: slope-space rules cut at curves where an integrand has kinks, such as the circle cosθi = cosθo."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from radiokit.measure.converge import Integrand
+from radiokit.measure.curves import CURVES, Curve
 from radiokit.measure.ridge import Ridge
 from radiokit.measure.slope import gauss_legendre, mirrored, slope_map
 
@@ -17,10 +18,13 @@ __all__ = ["kinked", "split_rule"]
 FloatArray = npt.NDArray[np.float64]
 
 STEPS = (4e-5, 2e-5)
-"""Distances from the circle, in the radial coordinate, at which second differences are taken."""
+"""Distances from a curve, in the radial coordinate, at which second differences are taken."""
 
 AZIMUTHS = 16
-"""Places on the circle at which an integrand is looked at."""
+"""Places on each panel of a curve at which an integrand is looked at."""
+
+FEW = 8
+"""Places that are kept of them where few integrands bend: on all curves but the circle."""
 
 KINK = (0.35, 0.65)
 """By what second differences shrink when the step is halved: by 1/2 at a kink, by 1/4 where f is smooth."""
@@ -29,38 +33,63 @@ NOISE = 1e-9
 """Second differences below this share of the integrand are no kink that matters, or rounding."""
 
 
-def _circle(wo: FloatArray, width: npt.ArrayLike, s: FloatArray) -> FloatArray:
-    """Return ``slope_map``'s x of the circle: there the half vector's slope is ρ = tanθo cosφ = sinh y."""
-    y = np.arcsinh(np.hypot(wo[0], wo[1]) / wo[2]) * np.cos(np.pi * s)
-    width = np.asarray(width, dtype=float)
-    share = np.arcsinh(np.sinh(y) / width) / np.arcsinh(np.exp(y) / width)
+def _radius(curve: Curve, wo: FloatArray, width: npt.ArrayLike, s: FloatArray) -> FloatArray:
+    """Return ``slope_map``'s x of a curve at azimuths s: in [0, 1], and at an end where it does not run."""
+    tan_o = float(np.hypot(wo[0], wo[1]) / wo[2])
+    y = np.arcsinh(tan_o) * np.cos(np.pi * s)
+    rho, edge, width = curve.slope(tan_o, y), np.exp(y), np.asarray(width, dtype=float)
+    share = np.arcsinh(np.minimum(rho, edge) / width) / np.arcsinh(edge / width)
     share = np.clip(share, 0.0, 1.0)
     result: FloatArray = share / (1 + np.sqrt(1 - share))
     return result
 
 
-def kinked(integrand: Integrand, wo: FloatArray, width: float) -> tuple[bool, int]:
-    """Return whether the integrand's slope jumps at the circle cosθi = cosθo, and the evaluations.
+def _turns(curves: tuple[Curve, ...], wo: FloatArray) -> tuple[float, ...]:
+    """Return the azimuths s in (0, 1) at which curves start, stop or meet."""
+    tan_o = float(np.hypot(wo[0], wo[1]) / wo[2])
+    big_y = float(np.arcsinh(tan_o))
+    ends = {y for curve in curves for y in curve.ends(tan_o) if abs(y) < big_y}
+    return tuple(float(np.arccos(y / big_y)) / np.pi for y in ends)
+
+
+def kinked(
+    integrand: Integrand, wo: FloatArray, width: float, curves: tuple[Curve, ...] = CURVES
+) -> tuple[tuple[Curve, ...], int]:
+    """Return those of ``curves`` at which the integrand's slope jumps, and the evaluations.
 
     >>> wo = np.array([0.6, 0.0, 0.8])
-    >>> kinked(lambda w: np.maximum(w[:, 2], wo[2]), wo, 0.3)[0], kinked(lambda w: w[:, 2], wo, 0.3)[0]
-    (True, False)
+    >>> [curve.name for curve in kinked(lambda w: np.maximum(w[:, 2], wo[2]), wo, 0.3)[0]]
+    ['cosθi = cosθo']
+    >>> kinked(lambda w: w[:, 2], wo, 0.3)[0]
+    ()
     """
-    if np.hypot(wo[0], wo[1]) < 1e-6 * wo[2]:
-        return False, 0  # at normal incidence the circle is a point
-    s, _ = _panels(wo, width, AZIMUTHS, None, False)
-    s = s[s < 0.5]
     shift = np.array([0.0, *(sign * step for step in STEPS for sign in (-1.0, 1.0))])
-    x = _circle(wo, width, s)
-    x = x + shift[:, None] * np.minimum(x, 1 - x)
-    wi, weight, _ = slope_map(wo, width, x, s)
-    flat = wi.reshape(-1, 3)
-    value = np.asarray(integrand(np.concatenate([flat, mirrored(flat, wo)])), dtype=float)
-    value = value.reshape(2, *x.shape, -1) * weight[..., None]
-    size = np.abs(value[:, 0]).sum(axis=(0, 1))
-    wide, near = (np.abs(value[:, k] + value[:, k + 1] - 2 * value[:, 0]).sum(axis=(0, 1)) for k in (1, 3))
-    found = (near > KINK[0] * wide) & (near < KINK[1] * wide) & (near > NOISE * size)
-    return bool(np.any(found)), 2 * x.size
+    found: list[Curve] = []
+    evaluations = 0
+    for curve in curves:
+        s, _ = _panels(wo, width, AZIMUTHS, None, False, _turns((curve,), wo))
+        x = _radius(curve, wo, width, s)
+        inside = np.flatnonzero((x > 0) & (x < 1))
+        if not len(inside):
+            continue
+        if curve is not CURVES[0]:
+            inside = inside[:: -(-len(inside) // FEW)]
+        s, x = s[inside], x[inside]
+        x = x + shift[:, None] * np.minimum(x, 1 - x)
+        wi, weight, _ = slope_map(wo, width, x, s)
+        flat = wi.reshape(-1, 3)
+        value = np.asarray(integrand(np.concatenate([flat, mirrored(flat, wo)])), dtype=float)
+        value = value.reshape(2, *x.shape, -1) * weight[..., None]
+        size = np.abs(value[:, 0]).sum(axis=(0, 1))
+        wide, near = (
+            np.abs(value[:, k] + value[:, k + 1] - 2 * value[:, 0]).sum(axis=(0, 1)) for k in (1, 3)
+        )
+        bends = (near > KINK[0] * wide) & (near < KINK[1] * wide) & (near > NOISE * size)
+        found += [curve] if np.any(bends) else []
+        evaluations += 2 * x.size
+    if any(curve.crossed for curve in found):
+        found = list(dict.fromkeys([CURVES[0], *found]))
+    return tuple(found), evaluations
 
 
 def split_rule(
@@ -70,8 +99,9 @@ def split_rule(
     *,
     ridge: Ridge | None = None,
     symmetric: bool = False,
+    curves: tuple[Curve, ...] = CURVES[:1],
 ) -> tuple[FloatArray, FloatArray]:
-    """Return directions and weights like ``slope_rule``, by Gauss-Legendre rules on both sides of the circle.
+    """Return directions and weights like ``slope_rule``, by Gauss-Legendre rules between curves.
 
     Parameters
     ----------
@@ -79,6 +109,8 @@ def split_rule(
         Nodes along each radial part, and along each panel of azimuth: two, or up to five beside a ridge.
     ridge : Ridge, optional
         Where a long lobe lies, for azimuths to crowd at.
+    curves : tuple of Curve, optional
+        Where to cut: at the circle cosθi = cosθo unless given.
 
     >>> wo = np.array([0.6, 0.0, 0.8])
     >>> wi, weight = split_rule(wo, 1.0, (24, 24))
@@ -87,18 +119,20 @@ def split_rule(
     0.2
     """
     u, wu = gauss_legendre(n[0])
+    turns = _turns(curves, wo)
     sides = []
     for far in (False,) if symmetric or ridge is None else (False, True):
-        s, ws = _panels(wo, width, n[1], ridge, far)
-        ahead = s < 0.5
+        s, ws = _panels(wo, width, n[1], ridge, far, turns)
         local = np.full_like(s, width) if ridge is None else ridge.width(wo, width, s, far)
-        cut, front = _circle(wo, local[ahead], s[ahead]), ws[ahead]
-        pieces = (
-            (cut * u[:, None], ahead, wu[:, None] * cut * front),
-            (cut + (1 - cut) * u[:, None], ahead, wu[:, None] * (1 - cut) * front),
-            (u[:, None] * np.ones(int(np.sum(~ahead))), ~ahead, wu[:, None] * ws[~ahead]),
-        )
-        wi, weight = _joined([(*slope_map(wo, local[at], x, s[at])[:2], w) for x, at, w in pieces])
+        cuts = np.sort([_radius(curve, wo, local, s) for curve in curves], axis=0)
+        ends = np.concatenate([np.zeros((1, len(s))), cuts.reshape(-1, len(s)), np.ones((1, len(s)))])
+        parts = []
+        for low, high in pairwise(ends):
+            at = high > low
+            span = (high - low)[at]
+            wi, weight, _ = slope_map(wo, local[at], low[at] + span * u[:, None], s[at])
+            parts.append((wi, weight, wu[:, None] * span * ws[at]))
+        wi, weight = _joined(parts)
         sides.append((mirrored(wi, wo) if far else wi, weight))
     wi, weight = sides[0]
     if symmetric:
@@ -108,7 +142,7 @@ def split_rule(
 
 
 def _panels(
-    wo: FloatArray, width: float, n: int, ridge: Ridge | None, far: bool
+    wo: FloatArray, width: float, n: int, ridge: Ridge | None, far: bool, turns: tuple[float, ...]
 ) -> tuple[FloatArray, FloatArray]:
     """Return azimuths s in [0, 1] and their weights, in panels that end, and crowd, where f bends."""
     big_y = float(np.arcsinh(np.hypot(wo[0], wo[1]) / wo[2]))
@@ -122,15 +156,15 @@ def _panels(
             focus[0.5] = min(focus[0.5], ridge.aspect / np.pi)
         if min(place, 1 - place) * np.pi < ridge.aspect:  # the ridge is at an end, and seen from both
             focus = {0.5: focus[0.5], 0.0: ridge.aspect / np.pi, 1.0: ridge.aspect / np.pi}
-    points = sorted({0.0, 1.0, *focus})
+    points = sorted({0.0, 1.0, *focus, *turns})
     places, weights = [], []
     v, wv = gauss_legendre(n)
     for low, high in pairwise(points):
         ends = [(low, high), (high, low)]
-        ends = [(a, b) for a, b in ends if a in focus]
+        ends = [(a, b) for a, b in ends if a in focus] or ends[:1]
         for a, b in ends:
             b = (a + b) / 2 if len(ends) == 2 else b
-            scale = focus[a]
+            scale = focus.get(a, 1.0)
             length = np.arcsinh(abs(b - a) / scale)
             places.append(a + np.copysign(scale, b - a) * np.sinh(length * v))
             weights.append(scale * np.cosh(length * v) * length * wv)

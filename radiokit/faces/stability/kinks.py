@@ -21,6 +21,7 @@ Place = Callable[[int, Any, Any], Any]
 
 _RADII, _AZIMUTHS = 97, 96
 _BISECTIONS = 54
+_SAME = 1e-9  # how close zeros of two functions are that vanish together
 
 
 def boundaries(twin: Twin) -> tuple[sympy.Expr, ...]:
@@ -103,7 +104,54 @@ class Lines:
                 marks = _signature(signs[panel][g])
                 for k in np.flatnonzero(marks[1:] != marks[:-1]):
                     cuts.add(self._where(panel, g, s[k], s[k + 1], marks[k]))
-            self.breaks[panel] = _apart(cuts)
+            self.breaks[panel] = _apart(cuts | self._crossings(panel, s))
+
+    def _crossings(self, panel: int, s: Any) -> set[float]:
+        """Return the azimuths at which lines cross, so that the order of the zeros changes."""
+        found: set[float] = set()
+        if len(self._live) < 2:
+            return found
+        orders = self._orders(panel, s)
+        for k in range(len(s) - 1):
+            if orders[k] == orders[k + 1] or sorted(orders[k]) != sorted(orders[k + 1]):
+                continue
+            low, high = s[k], s[k + 1]
+            for _ in range(_BISECTIONS):
+                middle = (low + high) / 2
+                same = self._orders(panel, np.array([middle]))[0] == orders[k]
+                low, high = (middle, high) if same else (low, middle)
+            found.add(float((low + high) / 2))
+        return found
+
+    def _orders(self, panel: int, s: Any) -> list[tuple[tuple[int, ...], ...]]:
+        """Return which functions vanish along x, in order, for each of ``s``; in one group where together."""
+        orders = []
+        for roots in self._zeros(panel, s):
+            groups: list[tuple[float, list[int]]] = []
+            for x, g in sorted(roots):
+                if groups and x - groups[-1][0] < _SAME:
+                    groups[-1][1].append(g)
+                else:
+                    groups.append((x, [g]))
+            orders.append(tuple(tuple(sorted(members)) for _, members in groups))
+        return orders
+
+    def _zeros(self, panel: int, s: Any) -> list[list[tuple[float, int]]]:
+        """Return the zeros along x, each with its function, for each of ``s`` (N,)."""
+        signs = self._signs(panel, s[:, None], self._x[None, :])
+        found: list[list[tuple[float, int]]] = [[] for _ in s]
+        for g in self._live:
+            rows, places = np.nonzero(signs[g][:, 1:] != signs[g][:, :-1])
+            if not len(rows):
+                continue
+            low, high, before = self._x[places], self._x[places + 1], signs[g][rows, places]
+            for _ in range(_BISECTIONS):
+                middle = (low + high) / 2
+                same = self._signs(panel, s[rows], middle)[g] == before
+                low, high = np.where(same, middle, low), np.where(same, high, middle)
+            for row, x in zip(rows.tolist(), (low + high) / 2, strict=True):
+                found[row].append((x, g))
+        return found
 
     def _signs(self, panel: int, s: Any, x: Any) -> Any:
         with np.errstate(all="ignore"):
@@ -125,22 +173,9 @@ class Lines:
         """Return (index of s, start, end) of the pieces of [0, 1] between zeros, for each of ``s`` (N,)."""
         if not self._live:
             return [(k, 0.0, 1.0) for k in range(len(s))]
-        signs = self._signs(panel, s[:, None], self._x[None, :])
-        cuts: list[list[Any]] = [[] for _ in s]
-        for g in self._live:
-            rows, places = np.nonzero(signs[g][:, 1:] != signs[g][:, :-1])
-            if not len(rows):
-                continue
-            low, high, before = self._x[places], self._x[places + 1], signs[g][rows, places]
-            for _ in range(_BISECTIONS):
-                middle = (low + high) / 2
-                same = self._signs(panel, s[rows], middle)[g] == before
-                low, high = np.where(same, middle, low), np.where(same, high, middle)
-            for row, x in zip(rows.tolist(), (low + high) / 2, strict=True):
-                cuts[row].append(x)
         found = []
-        for k, roots in enumerate(cuts):
-            ends = [0.0, *_apart(roots), 1.0]
+        for k, roots in enumerate(self._zeros(panel, s)):
+            ends = [0.0, *_apart(x for x, _ in roots), 1.0]
             found += [(k, a, b) for a, b in itertools.pairwise(ends)]
         return found
 

@@ -1,7 +1,8 @@
 """Truth: the directional albedo of a twin to thirty digits, without a kernel and without a rule in float64.
 
-Floats only plan: which chart, and how many nodes. The integral itself is worked out twice, with
-multiple precision, at two resolutions, and counts only where they agree.
+Floats plan: which chart, and how many nodes, until three resolutions agree. The integral itself is worked out
+with multiple precision at the second of them, and counts only where the third agrees with it: in floats, or,
+where these round too much, in multiple precision too.
 """
 
 from __future__ import annotations
@@ -25,16 +26,18 @@ __all__ = ["AGREE", "DIGITS", "NODES", "NoTruthError", "Truth", "twin_albedo"]
 AGREE = 1e-12
 """Relative difference of two resolutions that is allowed."""
 
-NODES = 24_000
+NODES = 64_000
 """Values of the twin that one albedo may cost, unless the caller allows more."""
 
 _PLANNED = 4e-13
+_ROUNDING = 8 * float(np.finfo(float).eps)  # of a sum in floats, over a lobe's width and cosθo
+_TILTED = np.array([1e-20, 0.0, 0.0])
 _EVEN = 1e-10
 _ROUGHLY = 1e-3
 _CHEAP = 2000  # nodes below which no other chart is looked at
 _LOOK = Rule(128, 48, eased=False, midpoints=True)
-_RADII = (8, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128, 160)
-_AZIMUTHS = (1, 2, 4, 6, 8, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128, 160)
+_RADII = (8, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128, 160, 200)
+_AZIMUTHS = (1, 2, 4, 6, 8, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128, 160, 200, 256, 320)
 
 
 class NoTruthError(Exception):
@@ -49,7 +52,7 @@ class Truth:
     ----------
     value : mpmath.mpf
     uncertainty : float
-        Difference of the two resolutions; 0 of a closed form.
+        Difference from a finer resolution; 0 of a closed form.
     method : str
     nodes : int
         Values of the twin that it took.
@@ -63,13 +66,17 @@ class Truth:
 
 @dataclass(frozen=True)
 class _Plan:
-    """Rules of rising size, on one or both sides of the plane of incidence; the cost of the first two."""
+    """Rules of rising size, on one or both sides of the plane of incidence; the cost of the second.
+
+    ``finest`` is the integral by the third, in floats.
+    """
 
     side: Side
     both: bool
     rules: tuple[Rule, ...]
     cost: int
     value: float
+    finest: float
 
     def integral(self, k: int) -> tuple[Any, int]:
         """Return the integral by rule number ``k``, and the number of nodes."""
@@ -84,7 +91,7 @@ class _VanishesError(NoTruthError):
     """Nothing but zeros was seen."""
 
 
-def _plan(side: Side, eased: bool, most: int) -> _Plan:
+def _plan(side: Side, eased: bool, most: int, tolerance: float) -> _Plan:
     """Return the smallest rule with which two larger ones agree in floats, and what follows."""
     midpoints = side.periodic(1) and side.periodic(-1)
     azimuths = _AZIMUTHS if midpoints else _AZIMUTHS[3:]
@@ -106,7 +113,7 @@ def _plan(side: Side, eased: bool, most: int) -> _Plan:
             value, cost = at(rule)
             found.append(value)
             # Three that agree: two may do so by chance.
-            if k > 1 and value and max(abs(v - value) for v in found[-3:]) <= _PLANNED * abs(value):
+            if k > 1 and value and max(abs(v - value) for v in found[-3:]) <= tolerance * abs(value):
                 return k - 2, value
             if cost > 2 * most:
                 break
@@ -116,7 +123,7 @@ def _plan(side: Side, eased: bool, most: int) -> _Plan:
     i, value = first([Rule(n, azimuths[j], eased, midpoints) for n in _RADII], "radii")
     steps = ((min(i + k, len(_RADII) - 1), min(j + k, len(azimuths) - 1)) for k in range(3))
     rules = tuple(Rule(_RADII[r], azimuths[a], eased, midpoints) for r, a in steps)
-    return _Plan(side, both, rules, sum(at(rule)[1] for rule in rules[:2]), value)
+    return _Plan(side, both, rules, at(rules[1])[1], value, at(rules[2])[0])
 
 
 def _charts(f: BSDF, wo: FloatArray, through: bool) -> list[Chart]:
@@ -157,7 +164,13 @@ def twin_albedo(f: BSDF, wo: FloatArray, *, most: int = NODES) -> Truth:
             return Truth(closed + share, 0.0, "closed form: constant" if closed else "closed form: delta", 0)
         total, uncertainty, nodes, names = share, 0.0, 0, []
         for through in (False, True) if f.transmissive else (False,):
-            value, off, count, name = _hemisphere(f, twin, up, through, eta, most - nodes)
+            try:
+                value, off, count, name = _hemisphere(f, twin, up, through, eta, most - nodes)
+            except ZeroDivisionError:
+                if up[0] or up[1]:
+                    raise
+                # Where a twin divides by tanθo: an albedo is even in θo, and off by about the tilt's square.
+                value, off, count, name = _hemisphere(f, twin, up + _TILTED, through, eta, most - nodes)
             total, uncertainty, nodes = total + value, uncertainty + off, nodes + count
             names.append(name)
         return Truth(total, uncertainty, "integral: " + ", ".join(dict.fromkeys(names)), nodes)
@@ -194,6 +207,8 @@ def _hemisphere(
         if abs(eta - 1) > 1e-7 and not _beside(twin, wo, eta):
             cos_o, sin_o = float(wo[2]), math.hypot(*wo[:2])
             charts.insert(0, refracted_chart(cos_o, sin_o, eta, f.lobe_width() or 1.0))
+    coarse = _ROUNDING / ((f.lobe_width() or 1.0) * float(wo[2]))
+    tolerances = (_PLANNED, coarse) if coarse > _PLANNED else (_PLANNED,)
     best: _Plan | None = None
     reasons, seen, zeros = [], 0, 0
     rough = []
@@ -205,10 +220,10 @@ def _hemisphere(
             continue
         if not cut:
             rough.append(sum(side.planned(far, _LOOK)[0] for far in (1, -1)))
-        for eased in (False, True):
+        for eased, tolerance in itertools.product((False, True), tolerances):
             seen += 1
             try:
-                plan = _plan(side, eased, most)
+                plan = _plan(side, eased, most, tolerance)
             except NoTruthError as problem:
                 zeros += isinstance(problem, _VanishesError)
                 reasons.append(f"{chart.name}: {problem}")
@@ -222,20 +237,21 @@ def _hemisphere(
         raise NoTruthError("; ".join(dict.fromkeys(reasons)))
     name = best.side.chart.name
     # A narrow lobe may stand between the nodes of angles: those made for it, first in the list, would see it.
-    if abs(best.value - rough[0]) > _ROUGHLY * abs(rough[0]):
+    # Where nobody knows where the lobe is, any of the charts may be.
+    seers = rough if f.lobe_width() is None else rough[:1]
+    if not any(abs(best.value - value) <= _ROUGHLY * abs(value) for value in seers):
         raise NoTruthError(f"{name} give {best.value:.3g}, and {charts[0].name} about {rough[0]:.3g}")
     if best.cost > most:
         raise NoTruthError(f"{name}: {best.cost} nodes would be needed, and {most} are allowed")
-    values, spent = [], 0
-    for k in range(len(best.rules)):
+    spent, other = 0, mp.mpf(best.finest)
+    for k in (1, 2):
         value, count = best.integral(k)
-        values.append(value)
         spent += count
-        if k:
-            off = float(abs(values[k] - values[k - 1]))
-            if off <= AGREE * float(abs(values[k])):
-                return values[k], off, spent, name
-    raise NoTruthError(f"{name}: two resolutions differ by {off / float(abs(values[-1])):.1e}")
+        off = float(abs(value - other))
+        if off <= AGREE * float(abs(value)):
+            return value, off, spent, name
+        other = value
+    raise NoTruthError(f"{name}: two resolutions differ by {off / float(abs(value)):.1e}")
 
 
 def _beside(twin: Twin, wo: FloatArray, eta: float) -> bool:
