@@ -24,6 +24,9 @@ SAFETY = 3.0
 MEMORY = (0.0, 0.25, 0.75)
 """Powers of the last three relative differences, by which the older ones weigh: d, d^1.25, d^1.75."""
 
+FORGETFUL = (0.0, 1.0, 3.0)
+"""The same for integrands known to be smooth, whose differences about square from rule to rule: d, d², d⁴."""
+
 SMOOTH = 1e-5
 """Relative agreement that rules for a smooth integrand reach and others reach only by a rare chance."""
 
@@ -90,7 +93,8 @@ def converge(
         values.append(found.value)
         if len(values) < 3:
             continue
-        error = SAFETY * _credible(values, found.size) + rounding * found.size
+        memory = FORGETFUL if smooth else MEMORY
+        error = SAFETY * _credible(values, found.size, memory) + rounding * found.size
         if smooth:
             enough = np.maximum(atol, rtol * np.abs(found.value))
         else:
@@ -112,13 +116,13 @@ def _doubtful(values: list[Any], found: RuleSum) -> Any:
     return np.maximum(spread, 2 * found.size / np.sqrt(found.points))
 
 
-def _credible(values: list[Any], size: Any) -> Any:
+def _credible(values: list[Any], size: Any, memory: tuple[float, ...]) -> Any:
     """Return the smallest difference from the truth that a sequence of values makes credible."""
     differences = np.abs(np.diff(values[-4:], axis=0))[::-1]
     shares = differences / np.where(size > 0, size, 1.0)
     terms = [
         d * np.minimum(share, 1.0) ** power
-        for d, share, power in zip(differences, shares, MEMORY, strict=False)
+        for d, share, power in zip(differences, shares, memory, strict=False)
     ]
     return np.max(terms, axis=0)
 

@@ -39,6 +39,20 @@ SLOPE_SIZES: tuple[tuple[int, int], ...] = (
 )
 """Radii and azimuths in slope space; a lobe at grazing incidence needs more of the former."""
 
+SMOOTH_SIZES: tuple[tuple[int, int], ...] = (
+    (14, 10),
+    (26, 18),
+    (40, 28),
+    (59, 40),
+    (84, 60),
+    (120, 88),
+    (168, 128),
+    (240, 184),
+    (340, 264),
+    (480, 376),
+)
+"""The same for an integrand that is known to be smooth: four rules of 4088 nodes end in twelve digits of GGX."""
+
 SPLIT_SIZES: tuple[tuple[int, int], ...] = (
     (14, 10),
     (18, 14),
@@ -55,6 +69,9 @@ SPLIT_SIZES: tuple[tuple[int, int], ...] = (
 
 WIDTHS = (1.35, 0.8, 1.2, 1.0, 0.9, 1.1, 0.85, 1.0, 0.9, 1.1)
 """Factors on the lobe's width, so that consecutive rules do not fail in the same way."""
+
+SMOOTH_WIDTHS = (1.1, 0.9, 1.0, 1.05, 0.95, 1.1, 0.9, 1.0, 0.95, 1.05)
+"""The same where rules are known to converge: less off, for the accuracy that is best near the width itself."""
 
 SCAN = 4096
 """Points of the scan that every unknown integrand gets."""
@@ -172,7 +189,8 @@ def hemisphere(
             spent += LOOK
     steep = wo[2] > STEEP and ridge is not None and ridge.ratio < THIN
     cut = bool(curves) or steep
-    sizes = SPLIT_SIZES if cut else SLOPE_SIZES
+    sizes, widths = (SMOOTH_SIZES, SMOOTH_WIDTHS) if smooth and not cut else (SLOPE_SIZES, WIDTHS)
+    sizes = SPLIT_SIZES if cut else sizes
 
     def rule(n: tuple[int, int], factor: float) -> tuple[FloatArray, FloatArray]:
         if cut:
@@ -183,7 +201,7 @@ def hemisphere(
 
     def rules(most: int = most) -> Iterator[RuleSum]:
         used = spent
-        for k, (n, factor) in enumerate(zip(sizes, WIDTHS, strict=False)):
+        for k, (n, factor) in enumerate(zip(sizes, widths, strict=False)):
             least = (1.5 if cut else 1.0) * sides * n[0] * n[1]
             if k > 2 and used + least > most:
                 return
