@@ -51,7 +51,7 @@ SMOOTH_SIZES: tuple[tuple[int, int], ...] = (
     (340, 264),
     (480, 376),
 )
-"""The same for an integrand that is known to be smooth: four rules of 4088 nodes end in twelve digits of GGX."""
+"""The same for an integrand that is known to be smooth: 4088 nodes in four rules give twelve digits of GGX."""
 
 SPLIT_SIZES: tuple[tuple[int, int], ...] = (
     (14, 10),
@@ -71,7 +71,7 @@ WIDTHS = (1.35, 0.8, 1.2, 1.0, 0.9, 1.1, 0.85, 1.0, 0.9, 1.1)
 """Factors on the lobe's width, so that consecutive rules do not fail in the same way."""
 
 SMOOTH_WIDTHS = (1.1, 0.9, 1.0, 1.05, 0.95, 1.1, 0.9, 1.0, 0.95, 1.05)
-"""The same where rules are known to converge: less off, for the accuracy that is best near the width itself."""
+"""The same where rules are known to converge: less off, since they are best near the width itself."""
 
 SCAN = 4096
 """Points of the scan that every unknown integrand gets."""
