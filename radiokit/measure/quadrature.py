@@ -51,7 +51,7 @@ SMOOTH_SIZES: tuple[tuple[int, int], ...] = (
     (340, 264),
     (480, 376),
 )
-"""The same for an integrand that is known to be smooth: 4088 nodes in four rules give twelve digits of GGX."""
+"""The same for an integrand known to be smooth: 4088 nodes in four rules give twelve digits of GGX."""
 
 SPLIT_SIZES: tuple[tuple[int, int], ...] = (
     (14, 10),
