@@ -278,9 +278,11 @@ def test_explain_says_what_qmc_does():
 
 
 def test_validate_answers_every_sampled_case_by_qmc_too():
+    """Unless a case says in its setup why it leaves it out."""
     for name in rk.list_cases():
-        methods = rk.case(name).methods
-        assert ("qmc" in methods) == ("mis" in methods)
+        case = rk.case(name)
+        assert "mis" in case.methods or "qmc" not in case.methods
+        assert "qmc" in case.methods or "mis" not in case.methods or "low-discrepancy" in case.setup
 
 
 # Efficiency
