@@ -13,7 +13,18 @@ import numpy.typing as npt
 from radiokit.facts.errors import NonFiniteError
 from radiokit.facts.estimate import Estimate
 
-__all__ = ["BLOCK", "GK21", "ROUNDING", "Integrand", "RuleSum", "adaptive", "apply_rule", "converge"]
+__all__ = [
+    "BLOCK",
+    "FORGETFUL",
+    "GK21",
+    "MEMORY",
+    "ROUNDING",
+    "Integrand",
+    "RuleSum",
+    "adaptive",
+    "apply_rule",
+    "converge",
+]
 
 FloatArray = npt.NDArray[np.float64]
 Integrand = Callable[[FloatArray], Any]
@@ -25,7 +36,7 @@ MEMORY = (0.0, 0.25, 0.75)
 """Powers of the last three relative differences, by which the older ones weigh: d, d^1.25, d^1.75."""
 
 FORGETFUL = (0.0, 1.0, 3.0)
-"""The same for integrands known to be smooth, whose differences about square from rule to rule: d, d², d⁴."""
+"""The same for smooth lobes seen in their own coordinates: differences about square from rule to rule."""
 
 SMOOTH = 1e-5
 """Relative agreement that rules for a smooth integrand reach and others reach only by a rare chance."""
@@ -75,6 +86,7 @@ def converge(
     *,
     smooth: bool = False,
     rounding: float = ROUNDING,
+    memory: tuple[float, ...] = MEMORY,
 ) -> Estimate:
     """Go through ever finer rules until their differences bound the error as asked.
 
@@ -82,7 +94,8 @@ def converge(
     soon agree to ``SMOOTH``; rules for an integrand with jumps or kinks agree now and then by chance, but
     hardly ever so well. Only agreement to ``SMOOTH`` or better is believed. Without it the error is the
     spread of the last four values, and no less than one row of nodes' share of the whole. All this is left
-    out when the integrand is known to be ``smooth``. ``rounding`` is relative to the sum of absolute terms.
+    out when the integrand is known to be ``smooth``. ``rounding`` is relative to the sum of absolute terms;
+    ``memory`` says by which powers of the last differences the older ones count.
     """
     start = time.perf_counter()
     values: list[Any] = []
@@ -93,7 +106,6 @@ def converge(
         values.append(found.value)
         if len(values) < 3:
             continue
-        memory = FORGETFUL if smooth else MEMORY
         error = SAFETY * _credible(values, found.size, memory) + rounding * found.size
         if smooth:
             enough = np.maximum(atol, rtol * np.abs(found.value))

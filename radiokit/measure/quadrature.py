@@ -13,7 +13,17 @@ import numpy.typing as npt
 
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.box import bent, box
-from radiokit.measure.converge import GK21, ROUNDING, Integrand, RuleSum, adaptive, apply_rule, converge
+from radiokit.measure.converge import (
+    FORGETFUL,
+    GK21,
+    MEMORY,
+    ROUNDING,
+    Integrand,
+    RuleSum,
+    adaptive,
+    apply_rule,
+    converge,
+)
 from radiokit.measure.curves import CURVES, Curve
 from radiokit.measure.lattice import kronecker
 from radiokit.measure.polar import POLAR_SIZES, polar_rule
@@ -189,7 +199,10 @@ def hemisphere(
             spent += LOOK
     steep = wo[2] > STEEP and ridge is not None and ridge.ratio < THIN
     cut = bool(curves) or steep
-    sizes, widths = (SMOOTH_SIZES, SMOOTH_WIDTHS) if smooth and not cut else (SLOPE_SIZES, WIDTHS)
+    plain = (
+        smooth and symmetric and not cut
+    )  # a lobe that is alike on both sides, of which the width is known
+    sizes, widths = (SMOOTH_SIZES, SMOOTH_WIDTHS) if plain else (SLOPE_SIZES, WIDTHS)
     sizes = SPLIT_SIZES if cut else sizes
 
     def rule(n: tuple[int, int], factor: float) -> tuple[FloatArray, FloatArray]:
@@ -213,7 +226,8 @@ def hemisphere(
 
     # A direction is known to an eps; a narrow lobe magnifies that, and a grazing one more.
     rounding = ROUNDING + STEEPNESS / (core * float(wo[2]))
-    compare = partial(converge, smooth=smooth, rounding=rounding)
+    memory = FORGETFUL if plain else MEMORY
+    compare = partial(converge, smooth=smooth, rounding=rounding, memory=memory)
     method = "slope-space quadrature"
     if smooth or core < BROAD or max_evaluations < 4 * BRIEF:
         found = compare(rules(), rtol, atol)
