@@ -87,7 +87,7 @@ def edge_pairs(f: BSDF) -> tuple[FloatArray, FloatArray]:
     return _sides(f, found, _refracted(f, [0.5, *_critical(f, 1e-9), *_critical(f, 1e-3)], [near]))
 
 
-DARK = 1e-280
+DARK = 1e-290
 """Values below this [sr⁻¹] count as 0: an exponential in them may have underflowed, below e⁻⁷⁰⁸."""
 
 
