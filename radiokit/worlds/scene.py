@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import operator
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property, partial, reduce
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -17,14 +15,11 @@ from radiokit.contracts.vectors import as_point, as_unit
 from radiokit.facts.directions import frame, to_local, to_world
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
-from radiokit.measure.quadrature import box
+from radiokit.worlds.finite import over_light
 
-__all__ = ["Receiver", "check_emitter", "irradiance", "over_light", "solid_angle"]
+__all__ = ["Receiver", "check_emitter", "irradiance", "solid_angle"]
 
 FloatArray = npt.NDArray[np.float64]
-
-_ROUNDING = 1e-14  # of the heights of a piece that ends at the horizon
-
 
 @dataclass(frozen=True)
 class Receiver:
@@ -115,49 +110,10 @@ def irradiance(
     if found is not None:
         return replace(found, seconds=time.perf_counter() - start)
 
-    def arriving(piece: Emitter, u: FloatArray) -> FloatArray:
-        wi, density = piece.sample(u, receiver.origin)
-        cosine = np.maximum(wi @ receiver.axis, 0.0)
-        value = piece.radiance_from(wi, receiver.origin) * cosine
-        return np.divide(value, density, out=np.zeros_like(value), where=density > 0)
+    def arriving(piece: Emitter, wi: FloatArray) -> FloatArray:
+        return piece.radiance_from(wi, receiver.origin) * np.maximum(wi @ receiver.axis, 0.0)
 
     return over_light(arriving, light, receiver, rtol)
-
-
-def over_light(
-    integrand: Callable[[Emitter, FloatArray], Any], light: Emitter, receiver: Receiver, rtol: float
-) -> Estimate:
-    """Integrate over a light, piece by piece, with points in the square from which a piece is sampled."""
-    pieces = light.pieces(receiver.origin, receiver.axis)
-    if not pieces:
-        nothing = np.zeros_like(np.asarray(integrand(light, np.full((1, 2), 0.5)))[0])[()]
-        return Estimate(nothing, nothing, "truncation", 1, method="none of the light is above the horizon")
-    found = [_over_piece(partial(integrand, piece), piece, receiver, rtol) for piece in pieces]
-    return reduce(operator.add, found)
-
-
-def _over_piece(
-    integrand: Callable[[FloatArray], Any], light: Emitter, receiver: Receiver, rtol: float
-) -> Estimate:
-    """Integrate over the square of a single piece, aware of the kink that its setting makes."""
-    kinks = crosses_horizon(light, receiver)
-    # Adaptive cubature stops as soon as it is near the tolerance: aim below it, then judge by it.
-    aim = rtol / 4 if kinks else rtol
-    found = box(integrand, (0.0, 0.0), (1.0, 1.0), rtol=aim, kinks=kinks)
-    converged = bool(np.all(found.error <= rtol * np.abs(found.value)))
-    note = "" if converged else found.note
-    error = found.error + getattr(light, "precision", 0.0) * np.abs(found.value)
-    method = f"{found.method} over the light"
-    return replace(found, error=error, method=method, converged=converged, note=note)
-
-
-def crosses_horizon(light: Emitter, receiver: Receiver) -> bool:
-    """Return whether a light that is sampled lies on both sides of the receiver's horizon."""
-    x = np.linspace(0.0, 1.0, 65)
-    grid = np.stack(np.meshgrid(x, x, indexing="ij"), axis=-1).reshape(-1, 2)
-    towards, _ = light.sample(grid, receiver.origin)
-    height = towards @ receiver.axis
-    return bool(np.any(height > _ROUNDING) and np.any(height < -_ROUNDING))
 
 
 def solid_angle(emitter: Emitter, *, position: npt.ArrayLike = (0.0, 0.0, 0.0)) -> Estimate:

@@ -22,7 +22,8 @@ from radiokit.measure.lattice import kronecker
 from radiokit.measure.lune import lune
 from radiokit.measure.montecarlo import mean
 from radiokit.measure.quadrature import hemisphere
-from radiokit.worlds.scene import Receiver, over_light
+from radiokit.worlds.finite import over_light
+from radiokit.worlds.scene import Receiver
 
 __all__ = ["DELTA_LIGHT", "DELTA_LOBES", "SMOOTH", "Part", "Term"]
 
@@ -46,7 +47,8 @@ MAX_SAMPLES = 1 << 20
 
 _SAME_DIRECTION = 1e-9  # a sample this near a delta lobe came from it: any other does so once in 1e18
 _EPS = float(np.finfo(float).eps)
-_GUARD = 4096  # lattice points that must confirm a quadrature over the light's own square
+_GUARD = 512  # lattice points that must confirm a quadrature over the light's own square
+_BLIND = 4096  # the same for a material that is sampled without regard to its lobe
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,18 +169,31 @@ class Term:
         """
         start = time.perf_counter()
 
-        def of(piece: Emitter, u: FloatArray) -> FloatArray:
-            return replace(self, light=piece)._from_light(u)
+        def product(piece: Emitter, directions: FloatArray) -> FloatArray:
+            return replace(self, light=piece).reflected(self.receiver.to_local(directions))
 
-        found = over_light(of, self.light, self.receiver, rtol)
-        values = self._both(kronecker(_GUARD, 4))
+        width = self.f.lobe_width()
+        if width is not None:  # in azimuth a lobe narrows towards the horizon
+            width *= float(np.clip(self.wo[2] + width, 0.0, 1.0))
+        mirror = self.receiver.to_world(self.wo * np.array([-1.0, -1.0, 1.0]))
+        found = over_light(
+            product,
+            self.light,
+            self.receiver,
+            rtol,
+            peaked=True,
+            width=width,
+            towards=(mirror, self.receiver.to_world(self.wo)),
+        )
+        count = _GUARD if getattr(self.f, "has_sampler", True) else _BLIND
+        values = self._both(kronecker(count, 2 + self.f.dimensions))
         means = values.reshape(16, -1, *self.shape).mean(axis=1)
         guard, spread = means.mean(axis=0), means.std(axis=0, ddof=1) / np.sqrt(len(means))
         gap = np.abs(found.value - guard)
         missed = gap > 8 * spread + 0.01 * np.abs(guard)
         found = replace(
             found,
-            evaluations=found.evaluations + 2 * _GUARD,
+            evaluations=found.evaluations + 2 * count,
             seconds=time.perf_counter() - start,
         )
         if np.any(missed):

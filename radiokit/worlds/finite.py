@@ -1,0 +1,116 @@
+"""Finite: integrals over a light that is no dome, in the square from which it samples its directions."""
+
+from __future__ import annotations
+
+import operator
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import reduce
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from radiokit.contracts.emitter import Emitter
+from radiokit.facts.estimate import Estimate
+from radiokit.measure.square import crowded_square
+from radiokit.worlds.lookout import Lookout, look
+
+if TYPE_CHECKING:
+    from radiokit.worlds.scene import Receiver
+
+__all__ = ["over_light"]
+
+FloatArray = npt.NDArray[np.float64]
+Product = Callable[[Emitter, FloatArray], Any]
+
+MOST = 2_000_000
+"""Evaluations when no budget is given."""
+
+_LEAST = 512
+
+
+def over_light(
+    product: Product,
+    light: Emitter,
+    receiver: Receiver,
+    rtol: float,
+    *,
+    peaked: bool = False,
+    width: float | None = None,
+    towards: Sequence[FloatArray] = (),
+    max_evaluations: int = MOST,
+    deadline: float = np.inf,
+) -> Estimate:
+    """Integrate over a light, piece by piece.
+
+    Parameters
+    ----------
+    product : callable
+        ``product(piece, directions)`` is the integrand over solid angle for world directions (N, 3).
+    light : Emitter
+    receiver : Receiver
+    rtol : float
+        Of each piece.
+    peaked : bool
+        Whether the product may have a narrow peak, for which the square is then searched.
+    width : float, optional
+        The peak's width [rad], where it is known.
+    towards : sequence of ndarray (3,)
+        World directions near which it may be.
+    max_evaluations, deadline
+        Budgets, as of ``crowded_square``.
+    """
+    pieces = light.pieces(receiver.origin, receiver.axis)
+    if not pieces:
+        nothing = np.zeros_like(np.asarray(product(light, receiver.axis[None, :]))[0])[()]
+        return Estimate(nothing, nothing, "truncation", 1, method="none of the light is above the horizon")
+    found: list[Estimate] = []
+    for k, piece in enumerate(pieces):
+        share = (max_evaluations - sum(each.evaluations for each in found)) // (len(pieces) - k)
+        now = time.perf_counter()
+        until = now + (deadline - now) / (len(pieces) - k)
+        seen = look(piece, receiver, _of(product, piece) if peaked else None, width=width, towards=towards)
+        found.append(_over_piece(_of(product, piece), piece, receiver, seen, rtol, max(share, _LEAST), until))
+    return reduce(operator.add, found)
+
+
+def _of(product: Product, piece: Emitter) -> Callable[[FloatArray], Any]:
+    return lambda directions: product(piece, directions)
+
+
+def _over_piece(
+    product: Callable[[FloatArray], Any],
+    piece: Emitter,
+    receiver: Receiver,
+    seen: Lookout,
+    rtol: float,
+    most: int,
+    deadline: float,
+) -> Estimate:
+    """Integrate over the square of a single piece."""
+
+    def integrand(u: FloatArray) -> Any:
+        directions, density = piece.sample(u, receiver.origin)
+        value = np.asarray(product(directions))
+        share = np.divide(1.0, density, out=np.zeros_like(density), where=density > 0)
+        return (value.T * share).T
+
+    found = crowded_square(
+        integrand,
+        rtol=rtol,
+        axes=seen.axes,
+        foci=seen.foci,
+        kinks=seen.kinks,
+        max_evaluations=most - seen.evaluations,
+        deadline=deadline,
+    )
+    error = found.error + getattr(piece, "precision", 0.0) * np.abs(found.value)
+    where = "the light, around the lobe" if seen.foci else "the light"
+    return replace(
+        found,
+        error=error,
+        evaluations=found.evaluations + seen.evaluations,
+        method=f"{found.method} over {where}",
+    )
