@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -12,30 +13,51 @@ import numpy.typing as npt
 from radiokit.facts.errors import NonFiniteError
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.converge import BLOCK, ROUNDING
-from radiokit.measure.slope import gauss_legendre
 
-__all__ = ["refine"]
+__all__ = ["PANEL", "lobatto", "refine"]
 
 FloatArray = npt.NDArray[np.float64]
 
 FINE, COARSE = 9, 6
 """Nodes along each axis of the two rules whose difference on a panel is taken for its error."""
 
+PANEL = FINE * FINE + COARSE * COARSE
+"""Evaluations on a panel."""
+
 LEFT = 0.1
 """Share of the whole error that may stay in the panels that are not refined next."""
 
-FEW = 3.0
-"""On few panels the differences may be small by chance: so many times their root sum of squares counts."""
+SAFETY, FEW = 2.0, 3.0
+"""Factors on the sum of the panels' differences, and on the root of the sum of their squares: on few panels,
+or where a kink crosses all of them alike, they may be small by chance."""
 
 ROUNDS = 4
 """Rounds after which the cost of reaching the tolerance is foretold from how the error falls."""
 
 
+def lobatto(n: int) -> tuple[FloatArray, FloatArray]:
+    """Return the nodes and weights of the n-point Gauss-Lobatto rule on [0, 1], which has both ends.
+
+    A rule without the ends does not see a kink between its last node and the end.
+
+    >>> x, w = lobatto(4)
+    >>> x[[0, -1]].tolist(), round(float(w @ x**5), 15)
+    ([0.0, 1.0], 0.166666666666667)
+    """
+    last = np.zeros(n)
+    last[-1] = 1.0  # the Legendre polynomial of degree n − 1
+    inner = np.polynomial.legendre.legroots(np.polynomial.legendre.legder(last))
+    x = np.concatenate([[-1.0], np.real(inner), [1.0]])
+    w = 2.0 / (n * (n - 1) * np.polynomial.legendre.legval(x, last) ** 2)
+    return (x + 1.0) / 2.0, w / 2.0
+
+
+@lru_cache(maxsize=1)
 def _pair() -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the points of both rules together, and the weights of the finer one and of the difference."""
     points, weights = [], []
     for n in (FINE, COARSE):
-        x, w = gauss_legendre(n)
+        x, w = lobatto(n)
         points.append(np.stack(np.meshgrid(x, x, indexing="ij"), axis=-1).reshape(-1, 2))
         weights.append(np.outer(w, w).ravel())
     fine = np.concatenate([weights[0], np.zeros(COARSE * COARSE)])
@@ -49,6 +71,7 @@ def refine(
     rtol: float,
     max_evaluations: int,
     deadline: float = np.inf,
+    first: int = 2,
 ) -> Estimate:
     """Integrate over ``cells`` unit squares together, by panels that are quartered where rules differ.
 
@@ -64,11 +87,13 @@ def refine(
         from how the error falls, stops early.
     deadline : float
         When to stop, by ``time.perf_counter`` [s].
+    first : int
+        Panels along each axis of a square to begin with.
 
     Returns
     -------
     Estimate
-        ``error`` is the sum of the panels' differences, none of which are set off against each other.
+        ``error`` goes by the sum of the panels' differences, none of which are set off against each other.
 
     Raises
     ------
@@ -82,8 +107,9 @@ def refine(
     """
     points, fine, off = _pair()
     corner = np.array([[0.0, 0.0], [0.0, 0.5], [0.5, 0.0], [0.5, 0.5]])
-    cell = np.repeat(np.arange(cells), 4)
-    low, edge = np.tile(corner, (cells, 1)), np.full(4 * cells, 0.5)
+    start = np.stack(np.meshgrid(np.arange(first), np.arange(first), indexing="ij"), axis=-1).reshape(-1, 2)
+    cell = np.repeat(np.arange(cells), first * first)
+    low, edge = np.tile(start / first, (cells, 1)), np.full(len(cell), 1.0 / first)
     done: list[Any] = []  # cell, low, edge, value, difference, size: of all panels that are kept
     spent = 0
     history: list[tuple[int, float]] = []
@@ -93,7 +119,7 @@ def refine(
         done = [np.concatenate(pair) for pair in zip(done, new, strict=True)] if done else list(new)
         total, size = done[3].sum(axis=0), done[5].sum(axis=0)
         apart = np.abs(done[4])
-        error = np.maximum(apart.sum(axis=0), FEW * np.sqrt((apart**2).sum(axis=0))) + ROUNDING * size
+        error = SAFETY * apart.sum(axis=0) + FEW * np.sqrt((apart**2).sum(axis=0)) + ROUNDING * size
         aim = rtol * np.abs(total)
         excess = float(np.max(np.divide(error, aim, out=np.full_like(error, np.inf), where=aim > 0)))
         if not np.any(size > 0):
@@ -150,11 +176,15 @@ def _hopeless(history: list[tuple[int, float]], budget: int) -> bool:
     """Return whether the error falls too slowly for the budget, by its last rounds."""
     if len(history) <= ROUNDS:
         return False
-    (before, then), (after, now) = history[-3], history[-1]
+    after, now = history[-1]
     if not np.isfinite(now) or now <= 1:
         return False
-    rate = np.log(max(then / now, 1.0)) / np.log(after / before)
-    return bool(np.log(now) > rate * np.log(max(budget / after, 1.0)))
+    rates = [
+        np.log(max(then / now, 1.0)) / np.log(after / before)
+        for before, then in history[:-2]
+        if np.isfinite(then)
+    ]
+    return bool(np.log(now) > max(rates, default=0.0) * np.log(max(budget / after, 1.0)))
 
 
 def _estimate(total: Any, error: Any, spent: int, converged: bool) -> Estimate:

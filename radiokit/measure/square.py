@@ -12,8 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from radiokit.facts.estimate import Estimate
-from radiokit.measure.converge import ROUNDING, RuleSum, apply_rule, converge
-from radiokit.measure.refine import refine
+from radiokit.measure.converge import MEMORY, RuleSum, apply_rule, converge
+from radiokit.measure.refine import PANEL, refine
 from radiokit.measure.slope import gauss_legendre
 
 __all__ = ["Axis", "Focus", "crowded_square"]
@@ -26,6 +26,15 @@ PLAIN = (8, 12, 16, 24, 32, 48, 64, 96, 128)
 
 CROWDED = (12, 18, 24, 32, 44, 60, 84)
 """The same on each side of a peak."""
+
+DOUBT, DOUBTFUL = 10.0, (0.0, 0.0, 0.0)
+"""Factor on the error where kinks may be inside, and the powers by which older differences then count."""
+
+SMOOTH_MOST, DOUBTFUL_MOST = 60_000, 24_000
+"""Evaluations that product rules may use, without and with such doubt."""
+
+KINKED = 5
+"""Panels along each axis where kinks are known to be inside, so that some of them see each kink."""
 
 APART = 3.0
 """Peaks nearer than so many widths are resolved as one."""
@@ -130,6 +139,7 @@ def crowded_square(
     axes: tuple[Axis, Axis] = (Axis(), Axis()),
     foci: Sequence[Focus] = (),
     kinks: bool = False,
+    smooth: bool = True,
     max_evaluations: int = 2_000_000,
     deadline: float = np.inf,
 ) -> Estimate:
@@ -149,6 +159,9 @@ def crowded_square(
     foci : sequence of Focus
     kinks : bool
         Whether kinks are known to be inside: then product rules, which agree by chance, are left out.
+    smooth : bool
+        False where kinks may be inside: then the last three differences of rules count alike, for each of
+        them may be small by chance.
     max_evaluations : int
         A budget, kept to the points of one rule or one round of refinement.
     deadline : float
@@ -174,12 +187,19 @@ def crowded_square(
     spent = 0
     found = None
     if not kinks:
-        found = converge(_rules(at, cells.count, len(foci) > 0, max_evaluations, deadline), rtol, 0.0)
+        most = min(max_evaluations, SMOOTH_MOST if smooth else DOUBTFUL_MOST)
+        rules = _rules(at, cells.count, len(foci) > 0, most, deadline)
+        doubt = 1.0 if smooth else DOUBT
+        found = converge(rules, rtol / doubt, 0.0, memory=MEMORY if smooth else DOUBTFUL)
+        found = replace(found, error=doubt * found.error)
         spent = found.evaluations
     method = "Gauss-Legendre"
     left = max_evaluations - spent
     if found is None or (not found.converged and left > 0 and time.perf_counter() < deadline):
-        more = refine(at, cells.count, rtol=rtol, max_evaluations=left, deadline=deadline)
+        panels = KINKED if kinks and left > KINKED**2 * cells.count * PANEL else 2
+        more = refine(
+            at, cells.count, rtol=rtol, max_evaluations=left, deadline=deadline, first=panels
+        )
         if found is None or more.converged or np.all(more.error <= found.error):
             found, method = more, "refined Gauss-Legendre"
         found = replace(found, evaluations=spent + more.evaluations)
@@ -206,7 +226,7 @@ def _rules(
         yield RuleSum(w @ values[part], w @ size[part], cells * len(x))
     for n in sizes[3:]:
         used += cells * n * n
-        if used > max(most // 4, 60_000) or used > most or time.perf_counter() > deadline:
+        if used > most or time.perf_counter() > deadline:
             return
         x, w = _product(n)
         cell = np.repeat(np.arange(cells), len(x))

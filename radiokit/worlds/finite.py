@@ -15,7 +15,7 @@ import numpy.typing as npt
 from radiokit.contracts.emitter import Emitter
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.square import crowded_square
-from radiokit.worlds.lookout import Lookout, look
+from radiokit.worlds.lookout import Lookout, edges, look
 
 if TYPE_CHECKING:
     from radiokit.worlds.scene import Receiver
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["over_light"]
 
 FloatArray = npt.NDArray[np.float64]
-Product = Callable[[Emitter, FloatArray], Any]
+Product = Callable[[Emitter], Callable[[FloatArray], Any]]
 
 MOST = 2_000_000
 """Evaluations when no budget is given."""
@@ -40,6 +40,7 @@ def over_light(
     peaked: bool = False,
     width: float | None = None,
     towards: Sequence[FloatArray] = (),
+    smooth: bool = True,
     max_evaluations: int = MOST,
     deadline: float = np.inf,
 ) -> Estimate:
@@ -48,7 +49,7 @@ def over_light(
     Parameters
     ----------
     product : callable
-        ``product(piece, directions)`` is the integrand over solid angle for world directions (N, 3).
+        ``product(piece)(directions)`` is the integrand over solid angle for world directions (N, 3).
     light : Emitter
     receiver : Receiver
     rtol : float
@@ -59,25 +60,26 @@ def over_light(
         The peak's width [rad], where it is known.
     towards : sequence of ndarray (3,)
         World directions near which it may be.
+    smooth : bool
+        Whether the product is known to have no kinks but those that its setting makes.
     max_evaluations, deadline
         Budgets, as of ``crowded_square``.
     """
     pieces = light.pieces(receiver.origin, receiver.axis)
     if not pieces:
-        nothing = np.zeros_like(np.asarray(product(light, receiver.axis[None, :]))[0])[()]
+        nothing = np.zeros_like(np.asarray(product(light)(receiver.axis[None, :]))[0])[()]
         return Estimate(nothing, nothing, "truncation", 1, method="none of the light is above the horizon")
     found: list[Estimate] = []
     for k, piece in enumerate(pieces):
         share = (max_evaluations - sum(each.evaluations for each in found)) // (len(pieces) - k)
         now = time.perf_counter()
         until = now + (deadline - now) / (len(pieces) - k)
-        seen = look(piece, receiver, _of(product, piece) if peaked else None, width=width, towards=towards)
-        found.append(_over_piece(_of(product, piece), piece, receiver, seen, rtol, max(share, _LEAST), until))
-    return reduce(operator.add, found)
-
-
-def _of(product: Product, piece: Emitter) -> Callable[[FloatArray], Any]:
-    return lambda directions: product(piece, directions)
+        value = product(piece)
+        seen = look(piece, receiver, value if peaked else None, width=width, towards=towards)
+        found.append(_over_piece(value, piece, receiver, seen, rtol, smooth, max(share, _LEAST), until))
+    total = reduce(operator.add, found)
+    converged = bool(np.all(total.error <= rtol * np.abs(total.value)))
+    return replace(total, converged=converged, note="" if converged else total.note)
 
 
 def _over_piece(
@@ -86,6 +88,7 @@ def _over_piece(
     receiver: Receiver,
     seen: Lookout,
     rtol: float,
+    smooth: bool,
     most: int,
     deadline: float,
 ) -> Estimate:
@@ -103,10 +106,15 @@ def _over_piece(
         axes=seen.axes,
         foci=seen.foci,
         kinks=seen.kinks,
+        smooth=smooth,
         max_evaluations=most - seen.evaluations,
         deadline=deadline,
     )
     error = found.error + getattr(piece, "precision", 0.0) * np.abs(found.value)
+    if seen.kinks and not np.any(found.value):
+        edge, _ = piece.sample(edges(), receiver.origin)
+        most = np.max(np.abs(np.asarray(product(edge))), axis=0)
+        error = error + most * piece.solid_angle(receiver.origin).value  # a sliver above the horizon
     where = "the light, around the lobe" if seen.foci else "the light"
     return replace(
         found,

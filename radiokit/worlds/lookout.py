@@ -16,7 +16,7 @@ from radiokit.measure.square import Axis, Focus
 if TYPE_CHECKING:
     from radiokit.worlds.scene import Receiver
 
-__all__ = ["Lookout", "look"]
+__all__ = ["Lookout", "edges", "look"]
 
 FloatArray = npt.NDArray[np.float64]
 _At = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
@@ -27,14 +27,18 @@ GRID = 16
 EDGE = 33
 """Places along each edge of the square."""
 
-LEVELS, ZOOM, SHRINK = 6, 13, 5.0
+LEVELS, ZOOM, SHRINK = 8, 11, 4.0
 """Rounds by which a peak is closed in on, places along each axis in each, and the factor between them."""
 
-FLAT = 0.7
-"""A peak is closed in on until the product varies by less than this over the places."""
+CLOSE, HAIR = 0.5, 1e-5
+"""A peak is closed in on until the places extend over less than this share of its width, and what stands for
+a width that is not known [rad]."""
 
-HALVINGS = 40
-"""Steps from a peak outwards, each half of the one before, at which its width is looked for."""
+STEPS, STEP = 40, 0.6
+"""Steps from a peak outwards at which its width is looked for, and the factor from one to the next."""
+
+SLOPE = 1.5
+"""Where the product falls to half on one side and grows by more than this on the other is no peak."""
 
 NARROW = 0.3
 """Half-width in the square below which nodes crowd at a peak."""
@@ -67,12 +71,17 @@ def _places() -> FloatArray:
     x = (np.arange(GRID) + 0.5) / GRID
     grid = np.stack(np.meshgrid(x, x, indexing="ij"), axis=-1).reshape(-1, 2)
     t = np.linspace(0.0, 1.0, EDGE)
-    edges = [np.stack([np.full(EDGE, end), t], axis=-1) for end in (0.0, 1.0)]
-    edges += [np.stack([t, np.full(EDGE, end)], axis=-1) for end in (0.0, 1.0)]
+    sides = [np.stack([np.full(EDGE, end), t], axis=-1) for end in (0.0, 1.0)]
+    sides += [np.stack([t, np.full(EDGE, end)], axis=-1) for end in (0.0, 1.0)]
     near = [(d, 0.37) for d in (1e-4, 1e-6)] + [(1 - d, 0.37) for d in (1e-4, 1e-6)]
-    points = np.concatenate([grid, *edges, near, [(b, a) for a, b in near]])
+    points = np.concatenate([grid, *sides, near, [(b, a) for a, b in near]])
     points.setflags(write=False)
     return points
+
+
+def edges() -> FloatArray:
+    """Return places (N, 2) along the edges of the square."""
+    return _places()[GRID * GRID : GRID * GRID + 4 * EDGE]
 
 
 def look(
@@ -101,9 +110,9 @@ def look(
     heights = directions @ receiver.axis
     kinks = bool(np.any(heights > ROUNDING) and np.any(heights < -ROUNDING))
     count = GRID * GRID
-    edges = directions[count : count + 4 * EDGE].reshape(4, EDGE, 3)
-    shape = [_edge_kind(edges, directions[count + 4 * EDGE :], axis) for axis in (0, 1)]
-    middle = edges.reshape(-1, 3).sum(axis=0) + directions[:count].sum(axis=0)
+    sides = directions[count : count + 4 * EDGE].reshape(4, EDGE, 3)
+    shape = [_edge_kind(sides, directions[count + 4 * EDGE :], axis) for axis in (0, 1)]
+    middle = sides.reshape(-1, 3).sum(axis=0) + directions[:count].sum(axis=0)
     length = float(np.sqrt(middle @ middle))
     size = np.pi
     if length > 0:
@@ -124,15 +133,15 @@ def look(
         seen, _ = light.sample(u, receiver.origin)
         return seen, _positive(product(seen))
 
-    peaks, values = _close_in(at, _axes(shape, None), np.array(seeds), towards)
+    peaks, values = _close_in(at, _axes(shape, None), np.array(seeds), towards, width or HAIR)
     axes = _axes(shape, peaks[int(np.argmax(values))])
-    foci = _foci(at, axes, peaks, values)
+    foci = _foci(at, axes, peaks, values, towards, width)
     return Lookout(axes, foci, kinks, size, spent)
 
 
-def _edge_kind(edges: FloatArray, near: FloatArray, axis: int) -> tuple[bool, bool, bool]:
+def _edge_kind(sides: FloatArray, near: FloatArray, axis: int) -> tuple[bool, bool, bool]:
     """Return whether an axis has a pole at its low and high end, and whether it is periodic."""
-    low, high = edges[2 * axis], edges[2 * axis + 1]
+    low, high = sides[2 * axis], sides[2 * axis + 1]
     poles = []
     for end, (far, close) in zip((low, high), near[4 * axis : 4 * axis + 4].reshape(2, 2, 3), strict=True):
         pole = bool(np.max(np.abs(end - end[0])) < _SAME)
@@ -149,21 +158,27 @@ def _axes(shape: list[tuple[bool, bool, bool]], peak: FloatArray | None) -> tupl
     """Return the map of each axis, with a periodic one opened opposite the peak."""
     found = []
     for axis, (low, high, periodic) in enumerate(shape):
-        start = None if peak is None or not periodic else float(peak[axis]) - 0.5
+        start = None if not periodic else 0.0 if peak is None else float(peak[axis]) - 0.5
         found.append(Axis(low_pole=low, high_pole=high, start=start))
     return found[0], found[1]
 
 
 def _close_in(
-    at: _At, axes: tuple[Axis, Axis], seeds: FloatArray, towards: FloatArray
+    at: _At,
+    axes: tuple[Axis, Axis],
+    seeds: FloatArray,
+    towards: FloatArray | Sequence[FloatArray],
+    width: float,
 ) -> tuple[FloatArray, FloatArray]:
     """Return where the product is largest near the first seed, and the places nearest to given directions."""
     t = np.linspace(-1.0, 1.0, ZOOM)
     star = np.stack(np.meshgrid(t, t, indexing="ij"), axis=-1).reshape(-1, 2)
     place = np.array([[axis.to_v(float(u)) for axis, u in zip(axes, seed, strict=True)] for seed in seeds])
-    reach, each = 1.0 / GRID, np.arange(len(seeds))
+    turns = np.array([axis.start is not None for axis in axes])
+    reach, each = np.where(turns, 0.5, 1.0 / GRID), np.arange(len(seeds))
     for _ in range(LEVELS):
-        v = np.clip(place[:, None, :] + reach * star, 0.0, 1.0)
+        v = place[:, None, :] + reach * star
+        v = np.where(turns, v % 1.0, np.clip(v, 0.0, 1.0))
         directions, values = at(_points(axes, v.reshape(-1, 2)))
         directions, values = directions.reshape(*v.shape[:2], 3), values.reshape(v.shape[:2])
         keys = values.copy()
@@ -171,9 +186,10 @@ def _close_in(
             keys[k] = -np.sum((directions[k] - direction) ** 2, axis=1)
         chosen = np.argmax(keys, axis=1)
         place, best = v[each, chosen], values[each, chosen]
-        if np.all(values.min(axis=1) >= FLAT * values.max(axis=1)):
+        extent = np.abs(directions - directions[each, chosen][:, None, :]).max()
+        if extent < CLOSE * width:
             break
-        reach /= SHRINK
+        reach = reach / SHRINK
     return _points(axes, place), best
 
 
@@ -181,24 +197,50 @@ def _points(axes: tuple[Axis, Axis], v: FloatArray) -> FloatArray:
     return np.stack([axis.to_u(v[:, k])[0] for k, axis in enumerate(axes)], axis=-1)
 
 
-def _foci(at: _At, axes: tuple[Axis, Axis], peaks: FloatArray, values: FloatArray) -> tuple[Focus, ...]:
-    """Return the peaks that are narrow, by where the product falls to half on the way out."""
-    steps = 0.5 ** np.arange(1.0, HALVINGS + 1)
+def _foci(
+    at: _At,
+    axes: tuple[Axis, Axis],
+    peaks: FloatArray,
+    values: FloatArray,
+    towards: FloatArray | Sequence[FloatArray],
+    width: float | None,
+) -> tuple[Focus, ...]:
+    """Return the peaks that are narrow, by where the product falls to half on the way out.
+
+    Near a direction in which a lobe of known width must lie, where the product may be hidden under something
+    broader, the way over which it changes is that width, or the distance if that is larger.
+    """
+    steps = 0.5 * STEP ** np.arange(STEPS)
     ways = np.array([(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)])
     foci: list[Focus] = []
-    for peak, value in sorted(zip(peaks, values, strict=True), key=lambda each: -each[1]):
-        place = np.array([axis.to_v(float(u)) for axis, u in zip(axes, peak, strict=True)])
-        if not value > 0 or any(_near(place, focus) for focus in foci):
+    for index in sorted(range(len(peaks)), key=lambda k: -values[k]):
+        place = np.array([axis.to_v(float(u)) for axis, u in zip(axes, peaks[index], strict=True)])
+        if not values[index] > 0 or any(_near(place, focus) for focus in foci):
             continue
-        v = place + ways[:, None, :] * steps[:, None]
+        v = np.concatenate([place[None, :], (place + ways[:, None, :] * steps[:, None]).reshape(-1, 2)])
         inside = np.all((v >= 0) & (v <= 1), axis=-1)
-        _, seen = at(_points(axes, np.clip(v, 0.0, 1.0).reshape(-1, 2)))
-        fallen = inside & (seen.reshape(4, HALVINGS) < value / 2)
-        reach = np.where(fallen, steps, np.inf).min(axis=1)
-        width = [float(w) if w < NARROW else np.inf for w in (min(reach[:2]), min(reach[2:]))]
-        if min(width) < NARROW:
-            foci.append(Focus((float(place[0]), float(place[1])), (width[0], width[1])))
+        directions, seen = at(_points(axes, np.clip(v, 0.0, 1.0)))
+        arms = np.where(inside, seen, np.inf)[1:].reshape(2, 2, STEPS)
+        reach = [_halved(arm, steps, values[index]) for arm in arms]
+        if index > 0 and width is not None and not min(reach) < NARROW:
+            away = float(np.sqrt(np.sum((directions[0] - towards[index - 1]) ** 2)))
+            moved = np.sqrt(np.sum((directions[1:] - directions[0]) ** 2, axis=-1)).reshape(2, 2, STEPS)
+            left = (moved > np.hypot(2 * width, away)) & inside[1:].reshape(2, 2, STEPS)
+            reach = [float(np.where(arm, steps, np.inf).min()) for arm in left]
+        found = [w if w < NARROW else np.inf for w in reach]
+        if min(found) < NARROW:
+            foci.append(Focus((float(place[0]), float(place[1])), (found[0], found[1])))
     return tuple(foci)
+
+
+def _halved(arms: FloatArray, steps: FloatArray, value: float) -> float:
+    """Return the least step (S,) at which one of two opposite arms (2, S) falls to half; infinite if none."""
+    falls = np.flatnonzero(arms.min(axis=0) < value / 2)
+    if not len(falls):
+        return np.inf
+    beside = arms[:, falls[-1]]
+    peaked = np.all(~np.isfinite(beside) | (beside < SLOPE * value))
+    return float(steps[falls[-1]]) if peaked else np.inf
 
 
 def _near(place: FloatArray, focus: Focus) -> bool:

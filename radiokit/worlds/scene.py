@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -110,8 +111,11 @@ def irradiance(
     if found is not None:
         return replace(found, seconds=time.perf_counter() - start)
 
-    def arriving(piece: Emitter, wi: FloatArray) -> FloatArray:
-        return piece.radiance_from(wi, receiver.origin) * np.maximum(wi @ receiver.axis, 0.0)
+    def arriving(piece: Emitter) -> Callable[[FloatArray], Any]:
+        def product(wi: FloatArray) -> FloatArray:
+            return piece.radiance_from(wi, receiver.origin) * np.maximum(wi @ receiver.axis, 0.0)
+
+        return product
 
     return over_light(arriving, light, receiver, rtol)
 

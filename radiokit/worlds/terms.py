@@ -169,8 +169,9 @@ class Term:
         """
         start = time.perf_counter()
 
-        def product(piece: Emitter, directions: FloatArray) -> FloatArray:
-            return replace(self, light=piece).reflected(self.receiver.to_local(directions))
+        def product(piece: Emitter) -> Callable[[FloatArray], Any]:
+            lit = replace(self, light=piece)
+            return lambda directions: lit.reflected(self.receiver.to_local(directions))
 
         width = self.f.lobe_width()
         if width is not None:  # in azimuth a lobe narrows towards the horizon
@@ -184,13 +185,14 @@ class Term:
             peaked=True,
             width=width,
             towards=(mirror, self.receiver.to_world(self.wo)),
+            smooth=self.f.smooth,
         )
         count = _GUARD if getattr(self.f, "has_sampler", True) else _BLIND
         values = self._both(kronecker(count, 2 + self.f.dimensions))
         means = values.reshape(16, -1, *self.shape).mean(axis=1)
         guard, spread = means.mean(axis=0), means.std(axis=0, ddof=1) / np.sqrt(len(means))
-        gap = np.abs(found.value - guard)
-        missed = gap > 8 * spread + 0.01 * np.abs(guard)
+        gap = np.maximum(guard - found.value, 0.0)  # what is missed is missing
+        missed = gap > 6 * spread + 0.01 * guard
         found = replace(
             found,
             evaluations=found.evaluations + 2 * count,
@@ -198,7 +200,7 @@ class Term:
         )
         if np.any(missed):
             note = f"a lattice over light and lobe finds {guard}: the rules missed a narrow lobe"
-            return replace(found, error=found.error + 2 * gap + 8 * spread, converged=False, note=note)
+            return replace(found, error=found.error + 2 * gap + 6 * spread, converged=False, note=note)
         return found
 
     # --- Monte Carlo ---
