@@ -269,9 +269,12 @@ def test_albedo_by_lattices_is_right_and_better_than_by_random_points(name, seed
 
 
 def test_explain_says_what_qmc_does():
-    sky = rk.emitter("constant", radiance=1.0)
+    sky, at_60 = rk.emitter("constant", radiance=1.0), (0.75**0.5, 0.0, 0.5)
     (row,) = rk.explain(rk.bsdf("lambert"), [sky], method="qmc").rows
-    assert (row.method, row.evaluations) == ("qmc", MAX_SAMPLES)
+    found = rk.shade(rk.bsdf("lambert"), [sky], (0, 0, 1), method="qmc", rng=1)
+    assert (row.method, row.evaluations) == ("qmc", found.evaluations)  # every sample has the same weight
+    (row,) = rk.explain(rk.bsdf("ggx", alpha=0.5), [sky], at_60, method="qmc", rtol=1e-9).rows
+    assert row.evaluations == MAX_SAMPLES
     assert row.why == "low-discrepancy points in place of random ones, put to mc-bsdf"
     (row,) = rk.explain(lambda wi, wo: 0.5 / np.pi, [sky], method="qmc", samples=1000).rows
     assert row.evaluations == 2 * 512

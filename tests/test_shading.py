@@ -299,22 +299,30 @@ def test_a_black_box_is_sampled_over_the_cosine():
 # --- what quadrature cannot do ---
 
 
-def test_a_lobe_that_slips_between_the_nodes_is_noticed(seed):
-    """A lobe without tails, half a milliradian wide, in a light a radian wide: every rule agrees on 0."""
+def pencil(turned):
+    """A lobe without tails, half a milliradian wide, ``turned`` from the mirror direction, of albedo 1."""
     cone = UniformCone(half_angle=2.5e-4)
 
+    def towards(wo):
+        return frame(unit(reflect(wo) + turned))
+
     def in_lobe(wi, wo):
-        return cone.pdf(to_local(frame(reflect(wo)), wi))
+        return cone.pdf(to_local(towards(wo), wi))
 
     def f(wi, wo):
         return in_lobe(wi, wo) / np.maximum(wi[:, 2], 1e-9)
 
     def sample(u, wo):
-        wi = to_world(frame(reflect(wo)), cone.sample(u))
+        wi = to_world(towards(wo[0]), cone.sample(u))
         return wi, np.ones(len(u))
 
-    wo = np.array(at(20))
-    model = as_bsdf(f, label="pencil", pdf=in_lobe, sample=sample)
+    return as_bsdf(f, label="pencil", pdf=lambda wi, wo: in_lobe(wi, wo[0]), sample=sample)
+
+
+def test_a_lobe_that_slips_between_the_nodes_is_noticed(seed):
+    """In a light a radian wide, where no one expects it, every rule agrees on 0."""
+    wo, turned = np.array(at(20)), np.array([-0.1, 0.15, 0.0])
+    model = pencil(turned)
     light = Sun(half_angle=0.5, direction=tuple(unit(reflect(wo) + np.array([0.05, 0.1, 0.0]))))
     forced = shade(model, [light], wo, method="quadrature")
     assert not forced.converged
@@ -323,6 +331,14 @@ def test_a_lobe_that_slips_between_the_nodes_is_noticed(seed):
     auto = shade(model, [light], wo, rng=seed)
     assert auto.kind == "statistical"
     assert auto.value == pytest.approx(5.0, rel=1e-3)
+
+
+def test_a_lobe_without_tails_is_found_where_it_is_expected(seed):
+    wo = np.array(at(20))
+    light = Sun(half_angle=0.5, direction=tuple(unit(reflect(wo) + np.array([0.05, 0.1, 0.0]))))
+    found = shade(pencil(np.zeros(3)), [light], wo, method="quadrature", rtol=1e-2)
+    assert abs(found.value - 5.0) <= found.error < 0.5
+    assert "around the lobe" in found.method
 
 
 @pytest.mark.parametrize("f", [GGX(alpha=1e-4), Phong(exponent=1e6)], ids=repr)

@@ -30,6 +30,7 @@ ENDLESS = 1 << 62
 
 _FIRST_LOOK = 4096  # samples of a ``BlockDraw`` before a tolerance is looked at
 _IN_FLIGHT = 256  # blocks handed to an executor at a time: results are small, and so stays the memory
+_FORETOLD = 2.0  # times the sample's variance: below it the sample is as good a witness
 _DOMINANCE = 0.1  # above this share of the variance in one sample, the central limit is not near
 
 
@@ -76,6 +77,7 @@ def mean(
     seconds: float | None = None,
     executor: Executor | None = None,
     method: str = "Monte Carlo",
+    foretold: Any = 0.0,
 ) -> Estimate:
     """Return the mean of random draws, and its standard error.
 
@@ -107,6 +109,9 @@ def mean(
         Runs the blocks; this thread does without it.
     method : str
         What the estimate says of its method.
+    foretold : float or array_like, shape (K,)
+        A variance of the draws that is known otherwise. Where rare draws carry the variance, those that were
+        seen may show little of it: this one then counts, wherever it is well above that of the sample.
 
     Returns
     -------
@@ -155,9 +160,9 @@ def mean(
                 late = seconds is not None and time.perf_counter() - start > seconds
                 if late:
                     break
-        error = _error(total, done)
+        error, settled = _error(total, done, foretold)
         something = np.any(total.mean) or done == blocks  # only zeros so far: a rare event may be missing
-        if rtol is not None and something and np.all(total.dominance <= _DOMINANCE):
+        if rtol is not None and something and np.all(settled | (total.dominance <= _DOMINANCE)):
             reached = bool(np.all(error <= rtol * np.abs(total.mean)))
     notes = []
     if total.count < most and not reached:
@@ -167,8 +172,8 @@ def mean(
         notes.append(f"rtol = {rtol} was not reached with {total.count} samples{but(total.mean, error)}")
     if not np.any(total.low) and not np.any(total.high):
         notes.append("every sample was 0")
-    if np.any(total.dominance > _DOMINANCE):
-        share = 100 * float(np.max(total.dominance))
+    if np.any((total.dominance > _DOMINANCE) & ~settled):
+        share = 100 * float(np.max(np.where(settled, 0.0, total.dominance)))
         notes.append(f"one sample carries {share:.0f} % of the variance: the standard error may be far off")
     return Estimate(
         total.mean if np.ndim(total.mean) else float(total.mean),
@@ -245,10 +250,12 @@ def _name(draw: Draw | BlockDraw) -> str:
     return str(getattr(draw, "__qualname__", type(draw).__qualname__))
 
 
-def _error(total: Moments, blocks: int) -> Any:
-    """Return the standard error, and not less than the rounding of the mean itself."""
+def _error(total: Moments, blocks: int, foretold: Any) -> tuple[Any, Any]:
+    """Return the standard error, not less than the rounding of the mean, and whether it was foretold."""
     floor = np.finfo(np.float64).eps * (4.0 + np.sqrt(blocks)) * np.abs(total.mean)
-    return np.hypot(total.standard_error, floor)
+    settled = np.asarray(foretold) > _FORETOLD * total.variance
+    spread = np.where(settled, np.sqrt(np.asarray(foretold) / total.count), total.standard_error)
+    return np.hypot(spread, floor)[()], settled
 
 
 def _in_order(

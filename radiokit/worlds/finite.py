@@ -57,7 +57,7 @@ def over_light(
     peaked : bool
         Whether the product may have a narrow peak, for which the square is then searched.
     width : float, optional
-        The peak's width [rad], where it is known.
+        The peak's angular radius [rad], where it is known.
     towards : sequence of ndarray (3,)
         World directions near which it may be.
     smooth : bool

@@ -30,7 +30,7 @@ EDGE = 33
 LEVELS, ZOOM, SHRINK = 8, 11, 4.0
 """Rounds by which a peak is closed in on, places along each axis in each, and the factor between them."""
 
-CLOSE, HAIR = 0.5, 1e-5
+CLOSE, HAIR = 0.25, 1e-5
 """A peak is closed in on until the places extend over less than this share of its width, and what stands for
 a width that is not known [rad]."""
 
@@ -43,8 +43,8 @@ SLOPE = 1.5
 NARROW = 0.3
 """Half-width in the square below which nodes crowd at a peak."""
 
-BROAD = 1.5
-"""Lobe's width over the light's size above which no peak is looked for."""
+BROAD = 3.0
+"""Lobe's angular radius over the light's size above which no peak is looked for."""
 
 ROUNDING = 1e-14  # of the heights of a light that ends at the horizon
 _SAME = 1e-9
@@ -101,7 +101,7 @@ def look(
     product : callable, optional
         f L cosθ for directions (N, 3) in world coordinates; without it no peak is looked for.
     width : float, optional
-        The lobe's width in slope, where it is known.
+        The lobe's angular radius [rad], where it is known.
     towards : ndarray, shape (M, 3), optional
         Directions at which the product may peak, such as that of the mirror.
     """
@@ -225,7 +225,7 @@ def _foci(
         if index > 0 and width is not None and not min(reach) < NARROW:
             away = float(np.sqrt(np.sum((directions[0] - towards[index - 1]) ** 2)))
             moved = np.sqrt(np.sum((directions[1:] - directions[0]) ** 2, axis=-1)).reshape(2, 2, STEPS)
-            left = (moved > np.hypot(2 * width, away)) & inside[1:].reshape(2, 2, STEPS)
+            left = (moved > np.hypot(width, away)) & inside[1:].reshape(2, 2, STEPS)
             reach = [float(np.where(arm, steps, np.inf).min()) for arm in left]
         found = [w if w < NARROW else np.inf for w in reach]
         if min(found) < NARROW:

@@ -1,4 +1,4 @@
-"""Planning: which method computes each light's term, why, and what else could."""
+"""Planning: which method computes each light's term, why, at what cost, and what else could."""
 
 from __future__ import annotations
 
@@ -14,11 +14,13 @@ from radiokit.contracts.blackbox import as_bsdf
 from radiokit.contracts.emitter import Emitter
 from radiokit.facts.directions import check_directions
 from radiokit.facts.errors import ParameterError, RadiokitError, UnknownNameError
-from radiokit.measure.lowdiscrepancy import lattice_samples
+from radiokit.worlds.budget import Budget
+from radiokit.worlds.pilot import Cost, foretell, lookouts
+from radiokit.worlds.sampling import best_sampling
 from radiokit.worlds.scene import Receiver, check_emitter
-from radiokit.worlds.terms import DELTA_LIGHT, DELTA_LOBES, MAX_SAMPLES, SMOOTH, Term
+from radiokit.worlds.terms import DELTA_LIGHT, DELTA_LOBES, SMOOTH, Term
 
-__all__ = ["METHODS", "Plan", "Row", "check_direction", "make_plan"]
+__all__ = ["METHODS", "Plan", "Row", "applies", "check_direction", "choose", "explained", "find_terms"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -26,12 +28,19 @@ METHODS = ("auto", "sum", "closed form", "quadrature", "mc", "mc-bsdf", "mc-ligh
 """What ``shade`` understands; ``mc`` stands for the Monte Carlo method that suits the term best, and ``qmc``
 for that method with low-discrepancy points."""
 
-_SAMPLED = ("mc-bsdf", "mc-light", "mis", "qmc")
+SAMPLED = ("mc-bsdf", "mc-light", "mis", "qmc")
+
+ROUGH = 4000
+"""Evaluations below which a budget is better spent on low-discrepancy samples than on a quadrature."""
 
 
 @dataclass(frozen=True)
 class Row:
-    """One term of the plan: what it is, how it is computed, why, at what cost, and what else applies."""
+    """One term of the plan: what it is, how it is computed, why, at what cost, and what else applies.
+
+    ``evaluations``, ``seconds`` and ``error`` are foretold in order of magnitude (see ``Cost``), and
+    ``costs`` says the same of the alternatives.
+    """
 
     name: str
     method: str
@@ -39,6 +48,14 @@ class Row:
     evaluations: int
     alternatives: tuple[str, ...]
     term: Term = field(repr=False, compare=False)
+    seconds: float = 0.0
+    error: float | None = None
+    costs: tuple[Cost, ...] = ()
+
+    @property
+    def cost(self) -> Cost:
+        """What the chosen method is expected to take."""
+        return Cost(self.method, self.evaluations, self.seconds, self.error)
 
     def to_json(self) -> dict[str, Any]:
         """Return the row as JSON-ready data."""
@@ -47,7 +64,10 @@ class Row:
             "method": self.method,
             "why": self.why,
             "evaluations": self.evaluations,
+            "seconds": self.seconds,
+            "error": self.error,
             "alternatives": list(self.alternatives),
+            "costs": [cost.to_json() for cost in self.costs],
         }
 
 
@@ -59,11 +79,11 @@ class Plan:
     rtol: float
     rows: tuple[Row, ...]
 
-    _COLUMNS = ("term", "method", "evaluations", "why", "also possible")
+    _COLUMNS = ("term", "method", "cost", "why", "also possible")
 
-    def _cells(self) -> list[tuple[str, ...]]:
+    def _cells(self) -> list[tuple[str, str, str, str, list[str]]]:
         return [
-            (row.name, row.method, str(row.evaluations), row.why, ", ".join(row.alternatives) or "nothing")
+            (row.name, row.method, str(row.cost), row.why, [f"{cost.method}: {cost}" for cost in row.costs])
             for row in self.rows
         ]
 
@@ -71,15 +91,18 @@ class Plan:
         lines = [f"{self.subject}, relative tolerance {self.rtol:g}"]
         if not self.rows:
             lines.append("  no light: 0")
-        for name, method, evaluations, why, others in self._cells():
-            lines.append(f"  {name}: {method}, about {evaluations} evaluations")
+        for name, method, cost, why, others in self._cells():
+            lines.append(f"  {name}: {method}, {cost}")
             lines.append(f"    because {why}")
-            lines.append(f"    also possible: {others}")
+            lines += [f"    also possible: {other}" for other in others or ["nothing"]]
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
         head = "".join(f"<th>{escape(name)}</th>" for name in self._COLUMNS)
-        rows = ["".join(f"<td>{escape(cell)}</td>" for cell in cells) for cells in self._cells()]
+        rows = []
+        for *cells, others in self._cells():
+            last = "<br>".join(map(escape, others)) or "nothing"
+            rows.append("".join(f"<td>{escape(str(cell))}</td>" for cell in cells) + f"<td>{last}</td>")
         body = "".join(f"<tr>{row}</tr>" for row in rows)
         caption = f"<caption>{escape(self.subject)}, relative tolerance {self.rtol:g}</caption>"
         return f"<table>{caption}<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
@@ -101,7 +124,7 @@ def check_direction(name: str, value: npt.ArrayLike) -> FloatArray:
     return direction
 
 
-def make_plan(
+def find_terms(
     f: Any,
     emitters: Emitter | Iterable[Emitter],
     wo: npt.ArrayLike | None,
@@ -110,9 +133,8 @@ def make_plan(
     position: npt.ArrayLike,
     method: str,
     rtol: float,
-    samples: int | None,
-) -> Plan:
-    """Check the arguments of ``shade`` and choose a method for each term."""
+) -> tuple[str, list[Term]]:
+    """Check the arguments of ``shade`` and return the material's name and the terms."""
     if method not in METHODS:
         raise UnknownNameError("method", method, METHODS)
     if not 0 < rtol < 1:
@@ -126,36 +148,69 @@ def make_plan(
         parts = (DELTA_LIGHT,) if light.delta else (DELTA_LOBES, SMOOTH)
         found = [Term(model, light, receiver, local, part) for part in parts]
         terms += [term for term in found if term.exists]
-    rows = [_row(term, method, rtol, samples) for term in terms]
-    if method not in ("auto", "sum") and rows and all(row.method == "sum" for row in rows):
+    options = [_options(term) for term in terms]
+    exact = all(each[0] == "sum" for each in options)
+    if method not in ("auto", "sum") and terms and exact and not any(method in each for each in options):
         usable = "'auto' or 'sum'"
-        if any("closed form" in row.alternatives for row in rows):
+        if any("closed form" in each for each in options):
             usable += " or 'closed form'"
         raise RadiokitError(
             f"method {method!r} does not apply: nothing is left to integrate here. Use {usable}",
             method=method,
         )
-    return Plan(repr(model), rtol, tuple(rows))
+    return repr(model), terms
 
 
-def _row(term: Term, method: str, rtol: float, samples: int | None) -> Row:
+def choose(term: Term, method: str, budget: Budget) -> str:
     """Choose the method of one term; delta lights and delta lobes are exact whatever was asked for."""
     options = _options(term)
-    wanted = term.best_sampling if method == "mc" else method
+    wanted = best_sampling(term) if method == "mc" else method
     exact = term.part != SMOOTH or options == ("sum",)
     if method == "auto" or (exact and wanted not in options):
-        chosen = options[0]
-    elif wanted in options:
-        chosen = wanted
-    else:
-        usable = ", ".join(repr(option) for option in options)
-        raise RadiokitError(
-            f"method {method!r} does not apply to {_name(term)}: {_why_not(method)}. Use 'auto' or {usable}",
-            method=method,
-            usable=options,
-        )
-    others = tuple(option for option in options if option != chosen)
-    return Row(_name(term), chosen, _why(term, chosen), _cost(term, chosen, rtol, samples), others, term)
+        scarce = budget.evaluations is not None and budget.evaluations < ROUGH
+        return "qmc" if options[0] == "quadrature" and scarce else options[0]
+    if wanted in options:
+        return wanted
+    usable = ", ".join(repr(option) for option in options)
+    raise RadiokitError(
+        f"method {method!r} does not apply to {_name(term)}: {_why_not(method)}. Use 'auto' or {usable}",
+        method=method,
+        usable=options,
+    )
+
+
+def applies(method: str, *scene: Any, normal: npt.ArrayLike, position: npt.ArrayLike) -> bool:
+    """Return whether ``shade`` can use a method for f, the emitters and wo."""
+    try:
+        _, terms = find_terms(*scene, normal=normal, position=position, method=method, rtol=1e-6)
+        for term in terms:
+            choose(term, method, Budget())
+    except RadiokitError:
+        return False
+    return True
+
+
+def explained(
+    term: Term, chosen: str, rtol: float, samples: int | None, budget: Budget, seconds: float | None
+) -> Row:
+    """Return the row of a term: the method, why it was chosen, what it costs, and what others would."""
+    others = tuple(option for option in _options(term) if option != chosen)
+    cost, *costs = (foretell(term, each, rtol, samples, budget, seconds) for each in (chosen, *others))
+    done = cost.evaluations
+    if chosen in SAMPLED and cost.error is not None and cost.error > rtol:  # it stops before the tolerance
+        most = budget.samples(best_sampling(term) if chosen == "qmc" else chosen, samples, 1 << 20)
+        done = min(done, np.inf if most is None else most * (2 if "mis" in (chosen, best_sampling(term)) else 1))
+    return Row(
+        _name(term),
+        chosen,
+        _why(term, chosen, budget),
+        int(min(done, 1e18)),
+        others,
+        term,
+        cost.seconds,
+        cost.error,
+        tuple(costs),
+    )
 
 
 def _options(term: Term) -> tuple[str, ...]:
@@ -167,17 +222,15 @@ def _options(term: Term) -> tuple[str, ...]:
         return ("sum", "closed form") if diffuse else ("sum",)
     if term.wo[2] <= 0:
         return ("sum",)
-    options: tuple[str, ...] = ("quadrature", *_SAMPLED)
-    if diffuse and term.light.irradiance_at(term.receiver.origin, term.receiver.axis) is not None:
-        return ("closed form", *options)
-    return options
+    options: tuple[str, ...] = ("quadrature", *SAMPLED)
+    return ("closed form", *options) if diffuse and term.arriving is not None else options
 
 
 def _name(term: Term) -> str:
     return f"{term.light.name}, {term.part}"
 
 
-def _why(term: Term, method: str) -> str:
+def _why(term: Term, method: str, budget: Budget) -> str:
     if method == "sum":
         if term.part == DELTA_LIGHT:
             if term.only_delta:
@@ -189,37 +242,32 @@ def _why(term: Term, method: str) -> str:
     if method == "closed form":
         return "the material is diffuse and the emitter's irradiance has a closed form: ρE/π"
     if method == "quadrature":
-        dome = term.light.dome(term.receiver.origin)
-        if dome is None:
-            return "the product is smooth over the square from which the light is sampled"
-        if dome:
-            return "the sky's and the surface's horizons bound a lune, in which the product is smooth"
-        return "the light fills the hemisphere, where the product is smooth in slope coordinates"
+        return _why_quadrature(term)
+    if method == "qmc" and budget.evaluations is not None and budget.evaluations < ROUGH:
+        return f"low-discrepancy points, put to {best_sampling(term)}, make most of so small a budget"
     return {
         "mc-bsdf": "samples of the material suffice for a light that is everywhere",
         "mc-light": "asked for: samples of the light",
         "mis": "samples of material and light, weighted by the balance heuristic, miss neither",
-        "qmc": f"low-discrepancy points in place of random ones, put to {term.best_sampling}",
+        "qmc": f"low-discrepancy points in place of random ones, put to {best_sampling(term)}",
     }[method]
+
+
+def _why_quadrature(term: Term) -> str:
+    dome = term.light.dome(term.receiver.origin)
+    if dome is not None:
+        if dome:
+            return "the sky's and the surface's horizons bound a lune, in which the product is smooth"
+        return "the light fills the hemisphere, where the product is smooth in slope coordinates"
+    seen = lookouts(term)
+    if any(each.kinks for each in seen):
+        return "the horizon cuts the square from which the light is sampled: panels are refined along the kink"
+    if any(each.foci for each in seen):
+        return "the lobe is narrower than the light: nodes crowd around it in the square that samples the light"
+    return "the light is narrower than the lobe: the product is smooth over the square that samples the light"
 
 
 def _why_not(method: str) -> str:
     if method == "sum":
         return "light arrives from a continuum of directions"
     return "it needs a diffuse material and an emitter with a closed-form irradiance"
-
-
-def _cost(term: Term, method: str, rtol: float, samples: int | None) -> int:
-    """Predict the evaluations of the material, in order of magnitude."""
-    if method == "sum":
-        if term.part == DELTA_LIGHT and not term.only_delta:
-            return len(term.light.incident(term.receiver.origin)[0])
-        return len(term.lobes) if term.part == DELTA_LOBES else 0
-    if method == "closed form":
-        return 0
-    if method == "quadrature":
-        return 4000 if rtol >= 1e-5 else 8000 if rtol >= 1e-7 else 40000
-    count = MAX_SAMPLES if samples is None else samples
-    if method == "qmc":
-        method, count = term.best_sampling, lattice_samples(count)
-    return 2 * count if method == "mis" else count

@@ -13,9 +13,16 @@ import numpy.typing as npt
 from radiokit.contracts.emitter import Emitter
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.montecarlo import seed_from
-from radiokit.worlds.planning import Plan, Row, make_plan
+from radiokit.worlds.budget import Budget, Purse
+from radiokit.worlds.integral import integrate
+from radiokit.worlds.planning import Plan, choose, explained, find_terms
+from radiokit.worlds.sampling import monte_carlo, sampling_is_better
+from radiokit.worlds.terms import SMOOTH, Term
 
 __all__ = ["explain", "shade"]
+
+SURER = 4.0
+"""A bound is given up for a standard error that is so many times smaller."""
 
 
 def shade(
@@ -28,6 +35,8 @@ def shade(
     method: str = "auto",
     rtol: float = 1e-6,
     samples: int | None = None,
+    seconds: float | None = None,
+    evaluations: int | None = None,
     rng: int | np.random.Generator | None = None,
     executor: Executor | None = None,
 ) -> Estimate:
@@ -61,7 +70,17 @@ def shade(
         Relative tolerance of each term, in (0, 1).
     samples : int, optional
         Monte Carlo draws exactly so many for each term; ``qmc`` rounds down to 16 times a power of 2.
-        Without it, it stops at ``rtol`` or after 2²⁰.
+        Without it, it stops at ``rtol`` or after 2²⁰. With a budget it is the most that are drawn.
+    seconds : float, optional
+        A budget of time for the whole call [s], above 0. Each term that must be integrated gets an equal
+        share of what the ones before have left; what is exact is always computed. Monte Carlo then draws as
+        many samples as there is time for. It may be exceeded by a block of 16384 samples, a rule of the
+        quadrature, or a round of its refinement.
+    evaluations : int, optional
+        A budget of evaluations of the material, at least 1, shared alike. A sample of ``mis`` counts as two.
+        It may be exceeded by what a term takes at the least: 1024 samples to foretell a variance, or the
+        search for a lobe and the first three rules of a quadrature over each piece of a light. Within a small
+        budget ``auto`` takes low-discrepancy samples.
     rng : int, numpy.random.Generator or None
         For Monte Carlo.
     executor : concurrent.futures.Executor, optional
@@ -70,7 +89,8 @@ def shade(
     Returns
     -------
     Estimate
-        Of shape () or (K,). ``converged`` is False when ``rtol`` was not reached.
+        Of shape () or (K,). ``converged`` is False when ``rtol`` was not reached; with a budget, the note then
+        says what was.
 
     Raises
     ------
@@ -91,55 +111,57 @@ def shade(
     >>> round(float(shade(half, lights, (0.0, 0.6, 0.8))), 9)  # 0.5 · 1 + 0.5/π · π
     1.0
     """
-    plan = make_plan(
-        f,
-        emitters,
-        wo,
-        normal=normal,
-        position=position,
-        method=method,
-        rtol=rtol,
-        samples=samples,
+    _, terms = find_terms(
+        f, emitters, wo, normal=normal, position=position, method=method, rtol=rtol
     )
+    purse = Purse(seconds, evaluations, sum(not term.exact for term in terms))
     generator = np.random.default_rng(seed_from(rng))
     total: Estimate | None = None
-    for row in plan.rows:
-        found = _compute(row, method, rtol, samples, generator, executor)
+    for term in terms:
+        budget = Budget() if term.exact else purse.share()
+        chosen = choose(term, method, budget)
+        found = _compute(term, chosen, method, rtol, samples, generator, executor, budget)
+        if not term.exact:
+            purse.pay(found.evaluations * (2 if "mis" in found.method else 1))
         total = found if total is None else total + found
-    return Estimate(0.0, 0.0, "rounding", method="sum", note="no light") if total is None else total
+    if total is None:
+        return Estimate(0.0, 0.0, "rounding", method="sum", note="no light")
+    return purse.judged(total, rtol)
 
 
 def _compute(
-    row: Row,
+    term: Term,
+    chosen: str,
     method: str,
     rtol: float,
     samples: int | None,
     rng: np.random.Generator,
     executor: Executor | None,
+    budget: Budget,
 ) -> Estimate:
-    term = row.term
-    if row.method == "sum":
-        viewer_below = term.part == "smooth"
-        return term.zero("the viewer is not above the horizon") if viewer_below else term.add_up()
-    if row.method == "closed form":
+    if chosen == "sum":
+        return term.zero("the viewer is not above the horizon") if term.part == SMOOTH else term.add_up()
+    if chosen == "closed form":
         return term.closed_form()
-    if row.method != "quadrature":
-        return term.monte_carlo(row.method, rtol=rtol, samples=samples, rng=rng, executor=executor)
-    found = term.quadrature(rtol)
-    if found.converged or method != "auto":
+    options: dict[str, Any] = {"rtol": rtol, "samples": samples, "rng": rng, "executor": executor}
+    if chosen != "quadrature":
+        return monte_carlo(term, chosen, budget=budget, **options)
+    found = integrate(term, rtol, budget)
+    left = budget.less(found.evaluations)
+    if found.converged or method != "auto" or not sampling_is_better(term, found, samples, left):
         return found
-    # What quadrature cannot resolve is left to Monte Carlo, if that is nearer to the truth.
-    sampled = term.monte_carlo("mis", rtol=rtol, samples=samples, rng=rng, executor=executor)
-    if np.all(4 * sampled.error < found.error):
+    # What quadrature cannot resolve is left to Monte Carlo.
+    sampled = monte_carlo(term, "mis", budget=left, **options)
+    if np.all(SURER * sampled.error < found.error):
         note = f"quadrature reached only ± {np.max(found.error):.2g}: {found.note}"
-        chosen, other = sampled, found
+        best, other = sampled, found
     else:
-        note, chosen, other = found.note, found, sampled
+        note, best, other = found.note, found, sampled
     return replace(
-        chosen,
+        best,
         evaluations=found.evaluations + sampled.evaluations,
-        seconds=chosen.seconds + other.seconds,
-        note="; ".join(filter(None, (note, chosen.note if chosen is sampled else ""))),
+        seconds=best.seconds + other.seconds,
+        note="; ".join(filter(None, (note, best.note if best is sampled else ""))),
     )
 
 
@@ -153,12 +175,17 @@ def explain(
     method: str = "auto",
     rtol: float = 1e-6,
     samples: int | None = None,
+    seconds: float | None = None,
+    evaluations: int | None = None,
 ) -> Plan:
     """Return the plan that ``shade`` would follow with the same arguments: a row for each term.
 
+    Each row says which method is taken and why, what it should cost and reach, and what the others would
+    cost for the same tolerance. That is foretold, in order of magnitude, from some thousand evaluations.
+
     Parameters
     ----------
-    f, emitters, normal, position, method, rtol, samples
+    f, emitters, normal, position, method, rtol, samples, seconds, evaluations
         As in ``shade``.
     wo : array_like, shape (3,), optional
         Unit vector to the viewer; along the normal when not given.
@@ -171,17 +198,15 @@ def explain(
     >>> from radiokit.emitters.point import Point
     >>> print(explain(lambda wi, wo: 0.5 / np.pi, [Point(position=(0, 0, 2), intensity=1.0)]))
     as_bsdf(<lambda>), relative tolerance 1e-06
-      point, delta light: sum, about 1 evaluations
+      point, delta light: sum, about 1 evaluations, 0.2 ms
         because the light arrives from single directions: the integral is a sum
         also possible: nothing
     """
-    return make_plan(
-        f,
-        emitters,
-        wo,
-        normal=normal,
-        position=position,
-        method=method,
-        rtol=rtol,
-        samples=samples,
-    )
+    subject, terms = find_terms(f, emitters, wo, normal=normal, position=position, method=method, rtol=rtol)
+    integrals = sum(not term.exact for term in terms)
+    purse = Purse(seconds, evaluations, integrals)
+    share, time_share = purse.share(), None if seconds is None else seconds / max(integrals, 1)
+    rows = [
+        explained(term, choose(term, method, share), rtol, samples, share, time_share) for term in terms
+    ]
+    return Plan(subject, rtol, tuple(rows))

@@ -19,8 +19,8 @@ from radiokit.facts.jsonable import jsonable
 from radiokit.facts.source import Source
 from radiokit.facts.verdict import Evidence, Outcome, Verdict, Witness
 from radiokit.measure.statistics import z_test
-from radiokit.worlds.planning import METHODS
-from radiokit.worlds.shading import explain, shade
+from radiokit.worlds.planning import METHODS, applies
+from radiokit.worlds.shading import shade
 
 __all__ = ["Case", "Scene", "case", "list_cases", "shading_case"]
 
@@ -45,6 +45,12 @@ class Scene:
     wo: Triple = (0.0, 0.0, 1.0)
     normal: Triple = (0.0, 0.0, 1.0)
     position: Triple = (0.0, 0.0, 0.0)
+
+    def applies(self, method: str) -> bool:
+        """Return whether one of the methods of ``radiokit.shade`` can be used."""
+        return applies(
+            method, self.f, self.emitters, self.wo, normal=self.normal, position=self.position
+        )
 
     def shade(
         self,
@@ -258,7 +264,7 @@ def shading_case(
     methods: dict[str, Method] = {
         method: partial(scene.shade, method)
         for method in METHODS
-        if method not in ("auto", "mc", *left_out) and _applies(scene, method)
+        if method not in ("auto", "mc", *left_out) and scene.applies(method)
     }
     return Case(
         name=name,
@@ -272,21 +278,6 @@ def shading_case(
         tags=tags,
         scene=scene,
     )
-
-
-def _applies(scene: Scene, method: str) -> bool:
-    try:
-        explain(
-            scene.f,
-            scene.emitters,
-            scene.wo,
-            normal=scene.normal,
-            position=scene.position,
-            method=method,
-        )
-    except RadiokitError:
-        return False
-    return True
 
 
 @cache

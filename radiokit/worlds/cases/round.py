@@ -24,12 +24,7 @@ Triple = tuple[float, float, float]
 _LEFT_OUT: dict[str, tuple[str, tuple[str, ...]]] = {
     "": ("", ()),
     "cut": (" For quadrature, the kink that the horizon makes leaves 5e-7.", ("quadrature",)),
-    "step": (
-        " The light's edge is a step in one coordinate of the material's samples, so that replicates of "
-        "low-discrepancy points take two values only and may agree by chance.",
-        ("qmc",),
-    ),
-    "small": (" Samples of the material do not find so small a light.", ("mc-bsdf", "mis", "qmc")),
+    "small": (" Samples of the material do not find so small a light.", ("mc-bsdf",)),
     "large": (" Samples of the material do not miss so large a light.", ("mc-bsdf",)),
 }
 _HALF = Lambert(reflectance=0.5)
@@ -172,7 +167,6 @@ def _disks() -> tuple[Case, ...]:
             disk,
             f=Phong(reflectance=1.0, exponent=10.0),
             source=Phong.SOURCE,
-            left_out="step",
         ),
     )
 
@@ -271,7 +265,6 @@ def _spheres() -> tuple[Case, ...]:
             Sphere(center=(0.0, 0.0, 5.0), radius=3.0, radiance=1.0),
             f=Phong(reflectance=1.0, exponent=10.0),
             source=Phong.SOURCE,
-            left_out="step",
         ),
         _case(
             "phong-10-under-sphere-at-mirror",
@@ -285,7 +278,6 @@ def _spheres() -> tuple[Case, ...]:
             lamp,
             f=Phong(reflectance=1.0, exponent=10.0),
             source=Phong.SOURCE,
-            left_out="step",
             wo=(-math.sqrt(0.75), 0.0, 0.5),
         ),
         _case(

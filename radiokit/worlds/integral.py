@@ -1,0 +1,121 @@
+"""Integral: a term by quadrature over the hemisphere, a lune, or the square of a finite light."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from radiokit.contracts.emitter import Emitter
+from radiokit.facts.estimate import Estimate
+from radiokit.measure.lattice import kronecker
+from radiokit.measure.lune import lune
+from radiokit.measure.quadrature import hemisphere
+from radiokit.worlds.budget import Budget
+from radiokit.worlds.finite import MOST, over_light
+from radiokit.worlds.sampling import Sampler
+from radiokit.worlds.terms import Term
+
+__all__ = ["GUARD", "integrate", "lobe_angle"]
+
+FloatArray = npt.NDArray[np.float64]
+
+GUARD, BLIND = 512, 4096
+"""Lattice points that must confirm a quadrature over a light's own square, for a material that is sampled by
+its lobe and for one that is not."""
+
+DOME_MOST = 4_000_000
+"""Evaluations under a dome when no budget is given."""
+
+_PROBE = 256  # evaluations that tell how long one takes
+_CAREFUL = 0.7  # share of the time that is planned for
+_LEAST = 1024  # evaluations that a quadrature gets in any case
+
+
+def integrate(term: Term, rtol: float, budget: Budget | None = None) -> Estimate:
+    """Integrate by the rule that fits the light: hemisphere, lune, or the light's own square."""
+    budget = Budget() if budget is None else budget
+    dome = term.light.dome(term.receiver.origin)
+    if dome is None:
+        return _over_square(term, rtol, budget)
+    most = min(_affordable(term, budget), DOME_MOST)
+    width = term.f.lobe_width()
+    if not dome:
+        return hemisphere(
+            term.reflected, wo=term.wo, width=width, rtol=rtol, smooth=term.f.smooth, max_evaluations=most
+        )
+    zenith = term.receiver.to_local(dome[0])
+    return lune(term.reflected, zenith, wo=term.wo, width=width, rtol=rtol, max_evaluations=most)
+
+
+def lobe_angle(term: Term) -> float | None:
+    """Return the angular radius [rad] of the material's lobe at its narrowest, or None if it is unknown.
+
+    In azimuth a lobe narrows towards the horizon.
+    """
+    width = term.f.lobe_width()
+    return None if width is None else 2 * width * float(np.clip(term.wo[2] + width, 0.0, 1.0))
+
+
+def _affordable(term: Term, budget: Budget) -> int:
+    """Return the evaluations that a budget allows, with the time that one takes measured."""
+    most = DOME_MOST if budget.evaluations is None else max(budget.evaluations, _LEAST)
+    if not np.isfinite(budget.deadline):
+        return most
+    directions = np.broadcast_to([0.0, 0.0, 1.0], (_PROBE, 3))
+    start = time.perf_counter()
+    term.reflected(directions)
+    now = time.perf_counter()
+    left = _CAREFUL * max(budget.deadline - now, 0.0)
+    return int(np.clip(left / (now - start) * _PROBE, _LEAST, most))
+
+
+def _over_square(term: Term, rtol: float, budget: Budget) -> Estimate:
+    """Integrate over the square from which the light samples its directions.
+
+    A lobe much narrower than the light can slip between the nodes of every rule, so that they agree on a
+    wrong value. Where it should be is known, and the square is searched for it; a lattice in the squares of
+    both the light and the material sees a lobe that is elsewhere.
+    """
+    start = time.perf_counter()
+
+    def product(piece: Emitter) -> Callable[[FloatArray], Any]:
+        lit = replace(term, light=piece)
+        return lambda directions: lit.reflected(term.receiver.to_local(directions))
+
+    count = GUARD if getattr(term.f, "has_sampler", True) else BLIND
+    most = MOST
+    if budget.evaluations is not None:
+        most = max(budget.evaluations, _LEAST)
+        count = min(count, 16 * max(most // 256, 1))
+        most = max(most - 2 * count, _LEAST)
+    mirror = term.receiver.to_world(term.wo * np.array([-1.0, -1.0, 1.0]))
+    found = over_light(
+        product,
+        term.light,
+        term.receiver,
+        rtol,
+        peaked=True,
+        width=lobe_angle(term),
+        towards=(mirror, term.receiver.to_world(term.wo)),
+        smooth=term.f.smooth,
+        max_evaluations=most,
+        deadline=budget.deadline,
+    )
+    sampler = Sampler(term, "mis")
+    values = sampler(kronecker(count, sampler.dimensions))
+    means = values.reshape(16, -1, *term.shape).mean(axis=1)
+    guard, spread = means.mean(axis=0), means.std(axis=0, ddof=1) / np.sqrt(len(means))
+    gap = np.maximum(guard - found.value, 0.0)  # what is missed is missing
+    missed = gap > found.error + 6 * spread + 0.01 * guard
+    found = replace(
+        found, evaluations=found.evaluations + 2 * count, seconds=time.perf_counter() - start
+    )
+    if np.any(missed):
+        note = f"a lattice over light and lobe finds {guard}: the rules missed a narrow lobe"
+        return replace(found, error=found.error + 2 * gap + 6 * spread, converged=False, note=note)
+    return found
