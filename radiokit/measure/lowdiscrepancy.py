@@ -28,6 +28,7 @@ REPLICATES = 16
 _CHUNK = 65536  # points evaluated at a time, of all replicates together
 _FIRST_LOOK = 32  # points in each replicate before a tolerance is looked at
 _BELOW_ONE = 1 - 2**-53
+_RARE = 10  # points within an edge: with fewer a lattice is no better than random points
 _STEP = 2.0  # points that an edge may be off by
 _OUTLIER = 0.96  # of the largest share of the variance that one replicate can have
 
@@ -42,6 +43,7 @@ def mean(
     rtol: float | None = None,
     seconds: float | None = None,
     stepped: bool = False,
+    foretold: Any = 0.0,
     method: str = "randomised quasi-Monte Carlo",
 ) -> Estimate:
     """Return the mean of a function over the unit cube, from lattices with independent random shifts.
@@ -75,11 +77,13 @@ def mean(
         is complete; the answer then depends on the machine's speed.
     stepped : bool
         Whether ``draw_from_points`` returns (n, 2K) values: K whose mean is wanted and, beside them, the part
-        of each that jumps to 0 at an edge. Where such an edge is crossed, the error is at least that of ``2``
-        points of the largest part: a lattice counts the points within an edge that is a step in one
+        of each that jumps to 0 at an edge. The error is then at least that of 2 points of the largest part: a lattice counts the points within an edge that is a step in one
         coordinate to ±1, and where the share θ of its shifts that count one more is small, all of R shifts
         agree by chance, with probability (1 − θ)^R. The bias θ/n of the largest part is then at most
         ln(1/p)/(Rn) of it at level p, which Student's interval holds for every p from 0.05 to 5e-4.
+    foretold : float or array_like, shape (K,)
+        The variance of those parts, known otherwise: it counts as that of random points while fewer than 10
+        points were within the edge.
     method : str
         What the estimate says of its method.
 
@@ -122,6 +126,7 @@ def mean(
     start = time.perf_counter()
     shifts = np.random.default_rng(seed_from(rng)).random((replicates, dimensions))
     run = _Run(draw_from_points, shifts, math.inf if seconds is None else start + seconds, stepped)
+    run.foretold = np.asarray(foretold)
     most = lattice_samples(wanted, replicates) // replicates
     count = min(_FIRST_LOOK, most)  # in each replicate
     found = run.extend(0, count)
@@ -192,7 +197,8 @@ class _Run:
     def __init__(self, draw: DrawFromPoints, shifts: FloatArray, deadline: float, stepped: bool) -> None:
         self.draw, self.shifts, self.deadline, self.stepped = draw, shifts, deadline, stepped
         self.largest: Any = 0.0  # of the parts that jump
-        self.missed: Any = False  # whether some were 0
+        self.hits: Any = 0  # how many were not 0
+        self.foretold: Any = np.zeros(())
         self.sums: Any = 0.0
         self.evaluations = 0
         self.doublings = 0
@@ -208,7 +214,9 @@ class _Run:
             self.sums = self.sums + self._chunk(index, count)
             self.late = time.perf_counter() > self.deadline
         self.doublings += 1
-        step = np.where(self.missed, _STEP * self.largest / (count * len(self.shifts)), 0.0)
+        points = count * len(self.shifts)
+        step = np.asarray(_STEP * self.largest / points)
+        step = np.where(self.hits < _RARE, np.maximum(step, np.sqrt(self.foretold / points)), step)
         return _Spread(np.asarray(self.sums) / count, self.doublings, step)
 
     def _indices(self, done: int, count: int) -> Iterator[npt.NDArray[np.integer[Any]]]:
@@ -236,7 +244,7 @@ class _Run:
         if self.stepped:
             values, parts = np.split(values, 2, axis=1)
             self.largest = np.maximum(self.largest, np.abs(parts).max(axis=0))
-            self.missed = self.missed | np.any(parts == 0, axis=0)
+            self.hits = self.hits + np.count_nonzero(parts, axis=0)
         if np.shape(self.sums) not in ((), (replicates, *values.shape[1:])):
             raise CallableError(name, "returned blocks of different shapes")
         self.evaluations += len(u)

@@ -31,6 +31,7 @@ ENDLESS = 1 << 62
 _FIRST_LOOK = 4096  # samples of a ``BlockDraw`` before a tolerance is looked at
 _IN_FLIGHT = 256  # blocks handed to an executor at a time: results are small, and so stays the memory
 _FORETOLD = 2.0  # times the sample's variance: below it the sample is as good a witness
+_UNSEEN = 2.0  # draws' worth of what N draws did not meet; −ln(5 %)/1.96 at least
 _DOMINANCE = 0.1  # above this share of the variance in one sample, the central limit is not near
 
 
@@ -78,6 +79,7 @@ def mean(
     executor: Executor | None = None,
     method: str = "Monte Carlo",
     foretold: Any = 0.0,
+    edge: bool = False,
 ) -> Estimate:
     """Return the mean of random draws, and its standard error.
 
@@ -112,6 +114,9 @@ def mean(
     foretold : float or array_like, shape (K,)
         A variance of the draws that is known otherwise. Where rare draws carry the variance, those that were
         seen may show little of it: this one then counts, wherever it is well above that of the sample.
+    edge : bool
+        Whether a draw may be 0 where it usually is not. All of N draws miss an event of probability p with
+        probability (1 − p)^N, so that the error is never less than that of 2 draws of the mean's size.
 
     Returns
     -------
@@ -160,7 +165,7 @@ def mean(
                 late = seconds is not None and time.perf_counter() - start > seconds
                 if late:
                     break
-        error, settled = _error(total, done, foretold)
+        error, settled = _error(total, done, foretold, edge)
         something = np.any(total.mean) or done == blocks  # only zeros so far: a rare event may be missing
         if rtol is not None and something and np.all(settled | (total.dominance <= _DOMINANCE)):
             reached = bool(np.all(error <= rtol * np.abs(total.mean)))
@@ -250,12 +255,13 @@ def _name(draw: Draw | BlockDraw) -> str:
     return str(getattr(draw, "__qualname__", type(draw).__qualname__))
 
 
-def _error(total: Moments, blocks: int, foretold: Any) -> tuple[Any, Any]:
+def _error(total: Moments, blocks: int, foretold: Any, edge: bool) -> tuple[Any, Any]:
     """Return the standard error, not less than the rounding of the mean, and whether it was foretold."""
-    floor = np.finfo(np.float64).eps * (4.0 + np.sqrt(blocks)) * np.abs(total.mean)
+    rounding = np.finfo(np.float64).eps * (4.0 + np.sqrt(blocks))
+    floor = max(rounding, _UNSEEN / total.count if edge else 0.0) * np.abs(total.mean)
     settled = np.asarray(foretold) > _FORETOLD * total.variance
     spread = np.where(settled, np.sqrt(np.asarray(foretold) / total.count), total.standard_error)
-    return np.hypot(spread, floor)[()], settled
+    return (np.maximum(spread, floor) if edge else np.hypot(spread, floor))[()], settled
 
 
 def _in_order(

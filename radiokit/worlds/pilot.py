@@ -113,8 +113,8 @@ def foretell(
 def _random(sampler: Sampler, rtol: float) -> tuple[float, Callable[[float], float]]:
     """Return the random samples that a tolerance needs, and the relative error of a number of them."""
     values = sampler(kronecker(PILOT, sampler.dimensions))
-    variance, _ = sampler.foretold(PILOT)
-    variance = np.maximum(variance, values.var(axis=0))
+    by_material, by_light, _ = sampler.foretold(PILOT)
+    variance = np.maximum(np.maximum(by_material, by_light), values.var(axis=0))
     mean = np.abs(values.mean(axis=0))
     ratio = _ratio(np.sqrt(variance), mean)
     needed = (ratio / rtol) ** 2
@@ -126,7 +126,13 @@ def _random(sampler: Sampler, rtol: float) -> tuple[float, Callable[[float], flo
 def _even(sampler: Sampler, rtol: float) -> tuple[float, Callable[[float], float]]:
     """Return the same for low-discrepancy samples, whose error falls as a power between −1/2 and −3/2."""
     found = [
-        lowdiscrepancy.mean(sampler.stepped, dimensions=sampler.dimensions, samples=n, rng=0, stepped=True)
+        lowdiscrepancy.mean(
+            sampler.stepped if sampler.edged else sampler,
+            dimensions=sampler.dimensions,
+            samples=n,
+            rng=0,
+            stepped=sampler.edged,
+        )
         for n in LATTICES
     ]
     ratios = [_ratio(each.error, each.value) for each in found]

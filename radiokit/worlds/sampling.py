@@ -41,6 +41,7 @@ PILOT = 512
 RARE = 10.0
 """Expected hits below which samples of the material alone say too little about a light."""
 
+_ZENITH = 1 - 1e-15  # cosine of a tilt that hides nothing
 _SAME_DIRECTION = 1e-9  # a sample this near a delta lobe came from it: any other does so once in 1e18
 
 
@@ -63,6 +64,12 @@ class Sampler:
         return (0 if self.strategy == "mc-light" else self.term.f.dimensions) + 2 * (
             self.strategy != "mc-bsdf"
         )
+
+    @cached_property
+    def edged(self) -> bool:
+        """Whether some of the material's samples may miss the light."""
+        dome = self.term.light.dome(self.term.receiver.origin)
+        return dome is None or any(float(zenith @ self.term.receiver.axis) < _ZENITH for zenith in dome)
 
     def __call__(self, u: FloatArray) -> FloatArray:
         """Return the estimates (N,) or (N, K) of points u (N, dimensions)."""
@@ -138,22 +145,23 @@ class Sampler:
 
     # --- what samples of the other kind foretell ---
 
-    def foretold(self, count: int) -> tuple[Any, float]:
-        """Return the variance () or (K,) of a sample as far as the other sampler sees it, and the hits.
+    def foretold(self, count: int) -> tuple[Any, Any, float]:
+        """Return variances () or (K,) of a sample as far as samples of the other kind see them, and the hits.
+
+        The first is that of the material's samples as the light's see it, the second that of the light's.
 
         Rare samples carry the variance where a light is small, or a lobe: they do not show among the samples
         that were drawn, but samples of the light, or of the lobe, see all of their weights. With g = f L cosθ
-        and densities p, q of the sampler and the other one, a sample's second moment is ∫ w² p dω = E_q[w² p/q],
-        w being g/p, or g/(p + q) under the balance heuristic. The hits are the share of the material's samples
-        that meet the light, E_q[p/q].
+        and densities p, q of the sampler and the other one, a sample's second moment is ∫ w² p dω =
+        E_q[w² p/q], w being g/p, or g/(p + q) under the balance heuristic. The hits are the share of the
+        material's samples that meet the light, E_q[p/q].
         """
-        moments, hits = [], 1.0
+        material, light, hits = np.zeros(self.term.shape), np.zeros(self.term.shape), 1.0
         if self.strategy != "mc-light":
-            moment, hits = self._seen_from(count, of_light=True)
-            moments.append(moment)
+            material, hits = self._seen_from(count, of_light=True)
         if self.strategy != "mc-bsdf":
-            moments.append(self._seen_from(count, of_light=False)[0])
-        return np.max(moments, axis=0), hits
+            light, _ = self._seen_from(count, of_light=False)
+        return material, light, hits
 
     def _seen_from(self, count: int, of_light: bool) -> tuple[Any, float]:
         """Return the variance of one kind of samples, as samples of the light or the material see it."""
@@ -206,20 +214,21 @@ def monte_carlo(
     rtol = rtol if samples is None else None
     count = budget.samples(sampler.strategy, samples, MAX_SAMPLES)
     seconds = budget.seconds_left()
+    pilot = PILOT if count is None else int(np.clip(count // 4, 32, PILOT))
+    by_material, by_light, hits = sampler.foretold(pilot)
     if method == "qmc":
         found = lowdiscrepancy.mean(
-            sampler.stepped,
+            sampler.stepped if sampler.edged else sampler,
             dimensions=sampler.dimensions,
             samples=None if count is None else max(count, lowdiscrepancy.REPLICATES),
             rtol=rtol,
             rng=rng,
             seconds=seconds,
-            stepped=True,
+            stepped=sampler.edged,
+            foretold=by_material,
             method=f"qmc, {sampler.strategy}",
         )
-        return found if term.shape else _scalar(found)
-    pilot = PILOT if count is None else int(np.clip(count // 4, 32, PILOT))
-    variance, hits = sampler.foretold(pilot)
+        return _doubted(found if term.shape or not sampler.edged else _scalar(found), sampler, hits)
     draw = partial(_draw, sampler)
     found = mean(
         draw,
@@ -230,12 +239,19 @@ def monte_carlo(
         block=BLOCK,
         executor=executor,
         method=method,
-        foretold=variance,
+        foretold=np.maximum(by_material, by_light),
+        edge=sampler.edged and sampler.strategy == "mc-bsdf",
     )
-    if sampler.strategy == "mc-bsdf" and hits * found.evaluations < RARE:
-        note = f"samples of the material hit the light about {hits * found.evaluations:.2g} times"
-        found = replace(found, converged=False, note="; ".join(filter(None, (note, found.note))))
-    return found
+    return _doubted(found, sampler, hits)
+
+
+def _doubted(found: Estimate, sampler: Sampler, hits: float) -> Estimate:
+    """Return an estimate as one that has not converged, if it rests on hits that hardly ever occur."""
+    expected = hits * found.evaluations
+    if sampler.strategy != "mc-bsdf" or expected >= RARE:
+        return found
+    note = f"samples of the material hit the light about {expected:.2g} times"
+    return replace(found, converged=False, note="; ".join(filter(None, (note, found.note))))
 
 
 def _scalar(found: Estimate) -> Estimate:
