@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from radiokit.facts.errors import NonFiniteError
 from radiokit.facts.estimate import Estimate
-from radiokit.measure.converge import MEMORY, RuleSum, apply_rule, converge
+from radiokit.measure.converge import BLOCK, MEMORY, RuleSum, apply_rule, converge
 from radiokit.measure.refine import PANEL, refine
 from radiokit.measure.slope import gauss_legendre
 
@@ -24,7 +25,7 @@ Integrand = Callable[[FloatArray], Any]
 PLAIN = (8, 12, 16, 24, 32, 48, 64, 96, 128)
 """Nodes along each axis where nothing peaks, tried in turn until rules agree."""
 
-CROWDED = (12, 18, 24, 32, 44, 60, 84)
+CROWDED = (8, 12, 18, 24, 32, 44, 60, 84)
 """The same on each side of a peak."""
 
 DOUBT, DOUBTFUL = 10.0, (0.0, 0.0, 0.0)
@@ -237,15 +238,19 @@ def _rules(
 
 
 def _checked(at: Callable[[Any, FloatArray], Any], cell: Any, x: FloatArray) -> FloatArray:
-    """Return the values at points, refusing those that are not finite."""
-    values: list[FloatArray] = []
-
-    def keep(p: FloatArray) -> Any:
-        values.append(at(cell[len(values[0]) if values else 0 :][: len(p)], p))
-        return values[-1]
-
-    apply_rule(keep, x, np.zeros(len(x)))
-    return np.concatenate(values)
+    """Return the values at points, in blocks, refusing those that are not finite."""
+    parts = []
+    for start in range(0, len(x), BLOCK):
+        part = slice(start, start + BLOCK)
+        values = np.asarray(at(cell[part], x[part]), dtype=float)
+        if not np.all(np.isfinite(values)):
+            row = int(np.argwhere(~np.isfinite(values))[0][0])
+            place = tuple(x[part][row].tolist())
+            raise NonFiniteError(
+                f"the integrand is {values[row]} at {place}", value=values[row], at=x[part][row].copy()
+            )
+        parts.append(values)
+    return np.concatenate(parts)
 
 
 def _product(n: int) -> tuple[FloatArray, FloatArray]:

@@ -44,7 +44,7 @@ def over_light(
     max_evaluations: int = MOST,
     deadline: float = np.inf,
 ) -> Estimate:
-    """Integrate over a light, piece by piece.
+    """Integrate over a light, piece by piece; where it names no pieces, as a whole in which something jumps.
 
     Parameters
     ----------
@@ -65,17 +65,19 @@ def over_light(
     max_evaluations, deadline
         Budgets, as of ``crowded_square``.
     """
-    pieces = light.pieces(receiver.origin, receiver.axis)
+    found: list[Estimate] = []
+    given: Any = light.pieces(receiver.origin, receiver.axis)
+    pieces = (light,) if given is None else given
     if not pieces:
         nothing = np.zeros_like(np.asarray(product(light)(receiver.axis[None, :]))[0])[()]
         return Estimate(nothing, nothing, "truncation", 1, method="none of the light is above the horizon")
-    found: list[Estimate] = []
     for k, piece in enumerate(pieces):
         share = (max_evaluations - sum(each.evaluations for each in found)) // (len(pieces) - k)
         now = time.perf_counter()
         until = now + (deadline - now) / (len(pieces) - k)
         value = product(piece)
         seen = look(piece, receiver, value if peaked else None, width=width, towards=towards)
+        seen = replace(seen, kinks=seen.kinks or given is None)
         found.append(_over_piece(value, piece, receiver, seen, rtol, smooth, max(share, _LEAST), until))
     total = reduce(operator.add, found)
     converged = bool(np.all(total.error <= rtol * np.abs(total.value)))

@@ -20,11 +20,11 @@ from radiokit.worlds.finite import MOST, over_light
 from radiokit.worlds.sampling import Sampler
 from radiokit.worlds.terms import Term
 
-__all__ = ["GUARD", "integrate", "lobe_angle"]
+__all__ = ["GUARD", "expected_peaks", "integrate", "lobe_angle", "product_of"]
 
 FloatArray = npt.NDArray[np.float64]
 
-GUARD, BLIND = 512, 4096
+GUARD, BLIND = 256, 4096
 """Lattice points that must confirm a quadrature over a light's own square, for a material that is sampled by
 its lobe and for one that is not."""
 
@@ -61,6 +61,22 @@ def lobe_angle(term: Term) -> float | None:
     return None if width is None else 2 * width * float(np.clip(term.wo[2] + width, 0.0, 1.0))
 
 
+def expected_peaks(term: Term) -> tuple[FloatArray, ...]:
+    """Return world directions (3,) in which a lobe may be: the mirror's, and ``wo`` itself if it is unknown."""
+    mirror = term.receiver.to_world(term.wo * np.array([-1.0, -1.0, 1.0]))
+    return (mirror,) if term.f.lobe_width() is not None else (mirror, term.receiver.to_world(term.wo))
+
+
+def product_of(term: Term) -> Callable[[Emitter], Callable[[FloatArray], Any]]:
+    """Return f L cosθ of a piece of the light, as a function of world directions (N, 3)."""
+
+    def product(piece: Emitter) -> Callable[[FloatArray], Any]:
+        lit = replace(term, light=piece)
+        return lambda directions: lit.reflected(term.receiver.to_local(directions))
+
+    return product
+
+
 def _affordable(term: Term, budget: Budget) -> int:
     """Return the evaluations that a budget allows, with the time that one takes measured."""
     most = DOME_MOST if budget.evaluations is None else max(budget.evaluations, _LEAST)
@@ -83,25 +99,20 @@ def _over_square(term: Term, rtol: float, budget: Budget) -> Estimate:
     """
     start = time.perf_counter()
 
-    def product(piece: Emitter) -> Callable[[FloatArray], Any]:
-        lit = replace(term, light=piece)
-        return lambda directions: lit.reflected(term.receiver.to_local(directions))
-
     count = GUARD if getattr(term.f, "has_sampler", True) else BLIND
     most = MOST
     if budget.evaluations is not None:
         most = max(budget.evaluations, _LEAST)
         count = min(count, 16 * max(most // 256, 1))
         most = max(most - 2 * count, _LEAST)
-    mirror = term.receiver.to_world(term.wo * np.array([-1.0, -1.0, 1.0]))
     found = over_light(
-        product,
+        product_of(term),
         term.light,
         term.receiver,
         rtol,
         peaked=True,
         width=lobe_angle(term),
-        towards=(mirror, term.receiver.to_world(term.wo)),
+        towards=expected_peaks(term),
         smooth=term.f.smooth,
         max_evaluations=most,
         deadline=budget.deadline,

@@ -43,7 +43,7 @@ SLOPE = 1.5
 NARROW = 0.3
 """Half-width in the square below which nodes crowd at a peak."""
 
-BROAD = 3.0
+BROAD = 0.6
 """Lobe's angular radius over the light's size above which no peak is looked for."""
 
 ROUNDING = 1e-14  # of the heights of a light that ends at the horizon

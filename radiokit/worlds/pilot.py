@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.contracts.emitter import Emitter
 from radiokit.facts.jsonable import jsonable
 from radiokit.measure import lowdiscrepancy
 from radiokit.measure.lattice import kronecker
 from radiokit.worlds.budget import Budget
-from radiokit.worlds.integral import GUARD, lobe_angle
+from radiokit.worlds.integral import GUARD, expected_peaks, lobe_angle, product_of
 from radiokit.worlds.lookout import Lookout, look
 from radiokit.worlds.sampling import BLOCK, STRATEGIES, Sampler, best_sampling
 from radiokit.worlds.terms import DELTA_LIGHT, DELTA_LOBES, MAX_SAMPLES, Term
@@ -33,7 +32,7 @@ LATTICES = (512, 2048)
 PER_EVALUATION, PER_CALL, PER_SUM = 2.5e-7, 1e-3, 2e-4
 """What an evaluation takes, a quadrature over one piece of a light before any, and a sum or closed form [s]."""
 
-FIRST_RULES, CROWDED_RULES = 464, 1044
+FIRST_RULES, CROWDED_RULES = 464, 532
 """Evaluations of the first three rules in a plain square, and in each part of one cut at a peak."""
 
 DOME = 4500
@@ -155,16 +154,10 @@ def _ratio(error: Any, value: Any) -> float:
 def lookouts(term: Term) -> list[Lookout]:
     """Return what a quadrature sees in the pieces of a finite light."""
     receiver = term.receiver
-    mirror = receiver.to_world(term.wo * np.array([-1.0, -1.0, 1.0]))
-
-    def product(piece: Emitter) -> Callable[[FloatArray], FloatArray]:
-        lit = replace(term, light=piece)
-        return lambda directions: lit.reflected(receiver.to_local(directions))
-
-    towards = (mirror, receiver.to_world(term.wo))
+    product, towards = product_of(term), expected_peaks(term)
     return [
         look(piece, receiver, product(piece), width=lobe_angle(term), towards=towards)
-        for piece in term.light.pieces(receiver.origin, receiver.axis)
+        for piece in term.light.pieces(receiver.origin, receiver.axis) or ()
     ]
 
 

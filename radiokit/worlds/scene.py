@@ -113,7 +113,8 @@ def irradiance(
 
     def arriving(piece: Emitter) -> Callable[[FloatArray], Any]:
         def product(wi: FloatArray) -> FloatArray:
-            return piece.radiance_from(wi, receiver.origin) * np.maximum(wi @ receiver.axis, 0.0)
+            radiance = piece.radiance_from(wi, receiver.origin)
+            return (radiance.T * np.maximum(wi @ receiver.axis, 0.0)).T
 
         return product
 

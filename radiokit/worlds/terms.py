@@ -73,7 +73,9 @@ class Term:
     def shape(self) -> tuple[int, ...]:
         """The shape of one value: () for one wavelength, (K,) for K of them."""
         up = np.array([[0.0, 0.0, 1.0]])
-        return tuple(np.shape(self.f.evaluate(up, self.wo[None, :]))[1:])
+        wavelengths = getattr(self.light, "wavelengths", None)
+        of_light = () if wavelengths is None else (wavelengths,)
+        return tuple(np.shape(self.f.evaluate(up, self.wo[None, :]))[1:]) or of_light
 
     def zero(self, note: str = "") -> Estimate:
         """Return 0, exactly."""
@@ -110,12 +112,12 @@ class Term:
             row = int(np.argwhere(~np.isfinite(values))[0][0])
             where = f"wi = {tuple(wi[row].tolist())}, wo = {tuple(self.wo.tolist())}"
             raise NonFiniteError(f"{self.f!r} is {values[row]} at {where}", value=values[row], at=wi[row])
-        total = times(values, arriving * wi[:, 2]).sum(axis=0)
+        total = times(values, times(arriving, wi[:, 2])).sum(axis=0)
         # A direction is known to a few eps, the cosine to that of 1, and a narrow lobe is steep.
         width = self.f.lobe_width() or 1e-2
         precision = getattr(self.f, "precision", _EPS)
         steep = 16 * precision * (1 + 1 / width)
-        error = times(np.abs(values), arriving * (8 * _EPS + steep * wi[:, 2])).sum(axis=0)
+        error = times(np.abs(values), times(arriving, 8 * _EPS + steep * wi[:, 2])).sum(axis=0)
         seconds = time.perf_counter() - start
         return Estimate(total[()], error[()], "rounding", len(wi), seconds, "sum")
 
@@ -133,11 +135,17 @@ class Term:
         """Return f L cosθ [W m⁻² sr⁻²] for local directions ``wi`` (N, 3)."""
         radiance = self.light.radiance_from(self.receiver.to_world(wi), self.receiver.origin)
         values = self.f.evaluate(wi, np.broadcast_to(self.wo, wi.shape))
-        return times(values, radiance * np.maximum(wi[:, 2], 0.0))
+        return times(values, times(radiance, np.maximum(wi[:, 2], 0.0)))
 
 
-def times(values: FloatArray, factor: FloatArray) -> FloatArray:
-    """Return values (N,) or (N, K) times a factor (N,)."""
-    result: FloatArray = (values.T * factor).T
+def times(first: npt.ArrayLike, second: npt.ArrayLike) -> FloatArray:
+    """Return the product of two factors along N directions, each (N,) or (N, K).
+
+    >>> times([1.0, 2.0], [[1.0, 3.0], [1.0, 3.0]]).tolist()
+    [[1.0, 3.0], [2.0, 6.0]]
+    """
+    one, other = np.asarray(first, dtype=np.float64), np.asarray(second, dtype=np.float64)
+    if one.ndim < other.ndim:
+        one, other = other, one
+    result: FloatArray = one * (other if one.ndim == other.ndim else other[:, None])
     return result
-

@@ -44,20 +44,16 @@ class Choice:
     seconds: float
     best: str
     best_seconds: float
-    noise: float
+    ratio: float
+    """The median over the repetitions, in each of which both are timed next to each other."""
     exact: bool
     """Whether a sum or a closed form exists, and ``auto`` took one."""
     missed: bool
     """Whether one exists and ``auto`` did not take it."""
 
-    @property
-    def ratio(self) -> float:
-        """How many times slower ``auto`` is."""
-        return self.seconds / self.best_seconds
-
     def to_json(self) -> dict[str, Any]:
         """Return the choice as JSON-ready data."""
-        return {name: jsonable(value) for name, value in (asdict(self) | {"ratio": self.ratio}).items()}
+        return {name: jsonable(value) for name, value in asdict(self).items()}
 
 
 def measure(
@@ -100,7 +96,8 @@ def _choice(problem: Case, rtol: float, repeats: int, seed: int) -> Choice:
         )
 
     forced = [method for method in problem.methods if scene.applies(method)]
-    limits = {method: None if method in ("sum", "closed form") else GLIMPSE for method in forced}
+    whole = ("sum", "closed form", "quadrature")
+    limits = {method: None if method in whole else GLIMPSE for method in forced}
     glimpses = {method: _needed(method, *_timed(call(method, limits[method])), rtol) for method in forced}
     rivals = sorted(forced, key=lambda method: glimpses[method])[:RIVALS]
     timings = interleave([call("auto"), *(call(method, limits[method]) for method in rivals)], repeats)
@@ -111,7 +108,7 @@ def _choice(problem: Case, rtol: float, repeats: int, seed: int) -> Choice:
     middle = [float(np.median(each)) for each in times]
     best = int(np.argmin(middle[1:]))
     taken = timings[0].results[-1].method
-    exact = all(part in ("sum", "closed form") or "integral along" in part for part in taken.split(" + "))
+    closed = all(part in ("sum", "closed form") or "integral along" in part for part in taken.split(" + "))
     return Choice(
         case=problem.name,
         rtol=rtol,
@@ -119,9 +116,9 @@ def _choice(problem: Case, rtol: float, repeats: int, seed: int) -> Choice:
         seconds=middle[0],
         best=rivals[best],
         best_seconds=middle[1 + best],
-        noise=math.hypot(timings[0].noise, timings[1 + best].noise),
-        exact=exact,
-        missed=not exact and any(method in ("sum", "closed form") for method in forced),
+        ratio=float(np.median(np.divide(times[0], times[1 + best]))),
+        exact=closed,
+        missed=not closed and any(method in ("sum", "closed form") for method in forced),
     )
 
 
