@@ -77,10 +77,11 @@ def mean(
         is complete; the answer then depends on the machine's speed.
     stepped : bool
         Whether ``draw_from_points`` returns (n, 2K) values: K whose mean is wanted and, beside them, the part
-        of each that jumps to 0 at an edge. The error is then at least that of 2 points of the largest part: a lattice counts the points within an edge that is a step in one
-        coordinate to ±1, and where the share θ of its shifts that count one more is small, all of R shifts
-        agree by chance, with probability (1 − θ)^R. The bias θ/n of the largest part is then at most
-        ln(1/p)/(Rn) of it at level p, which Student's interval holds for every p from 0.05 to 5e-4.
+        of each that jumps to 0 at an edge. The error is then at least that of 2 points of the largest part.
+        For a lattice counts the points within an edge to ±1 where the edge is a step in one coordinate; if
+        the share θ of the shifts that count one more is small, all of R shifts agree by chance, with
+        probability (1 − θ)^R. At level p the bias is then at most ln(1/p)/(Rn) of the largest part, for n
+        points in each replicate, which Student's interval holds for every p from 0.05 to 5e-4.
     foretold : float or array_like, shape (K,)
         The variance of those parts, known otherwise: it counts as that of random points while fewer than 10
         points were within the edge.

@@ -1,4 +1,4 @@
-"""Square: integrals over the unit square, with nodes that crowd where a peak is known, refined where needed."""
+"""Square: integrals over the unit square, with nodes that crowd where a peak is known."""
 
 from __future__ import annotations
 
@@ -198,9 +198,7 @@ def crowded_square(
     left = max_evaluations - spent
     if found is None or (not found.converged and left > 0 and time.perf_counter() < deadline):
         panels = KINKED if kinks and left > KINKED**2 * cells.count * PANEL else 2
-        more = refine(
-            at, cells.count, rtol=rtol, max_evaluations=left, deadline=deadline, first=panels
-        )
+        more = refine(at, cells.count, rtol=rtol, max_evaluations=left, deadline=deadline, first=panels)
         if found is None or more.converged or np.all(more.error <= found.error):
             found, method = more, "refined Gauss-Legendre"
         found = replace(found, evaluations=spent + more.evaluations)

@@ -62,7 +62,7 @@ def lobe_angle(term: Term) -> float | None:
 
 
 def expected_peaks(term: Term) -> tuple[FloatArray, ...]:
-    """Return world directions (3,) in which a lobe may be: the mirror's, and ``wo`` itself if it is unknown."""
+    """Return world directions (3,) of lobes: the mirror's, and ``wo`` for a lobe of which nothing is known."""
     mirror = term.receiver.to_world(term.wo * np.array([-1.0, -1.0, 1.0]))
     return (mirror,) if term.f.lobe_width() is not None else (mirror, term.receiver.to_world(term.wo))
 
@@ -123,9 +123,7 @@ def _over_square(term: Term, rtol: float, budget: Budget) -> Estimate:
     guard, spread = means.mean(axis=0), means.std(axis=0, ddof=1) / np.sqrt(len(means))
     gap = np.maximum(guard - found.value, 0.0)  # what is missed is missing
     missed = gap > found.error + 6 * spread + 0.01 * guard
-    found = replace(
-        found, evaluations=found.evaluations + 2 * count, seconds=time.perf_counter() - start
-    )
+    found = replace(found, evaluations=found.evaluations + 2 * count, seconds=time.perf_counter() - start)
     if np.any(missed):
         note = f"a lattice over light and lobe finds {guard}: the rules missed a narrow lobe"
         return replace(found, error=found.error + 2 * gap + 6 * spread, converged=False, note=note)

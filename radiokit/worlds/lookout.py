@@ -1,4 +1,4 @@
-"""Lookout: where in the square of a finite light its product with a lobe peaks, how narrowly, and on what map."""
+"""Lookout: where in the square of a finite light its product with a lobe peaks, and how narrowly."""
 
 from __future__ import annotations
 
@@ -148,7 +148,7 @@ def _edge_kind(sides: FloatArray, near: FloatArray, axis: int) -> tuple[bool, bo
         if pole:
             steps = [float(np.sqrt(np.sum((w - end[0]) ** 2))) for w in (far, close)]
             # A distance that goes as the root of u shrinks by 10 while u does by 100.
-            pole = 0 < steps[1] and steps[0] / steps[1] < 100.0**_ROOT
+            pole = steps[1] > 0 and steps[0] / steps[1] < 100.0**_ROOT
         poles.append(pole)
     periodic = not any(poles) and bool(np.max(np.abs(low - high)) < _SAME)
     return poles[0], poles[1], periodic
@@ -210,7 +210,7 @@ def _foci(
     Near a direction in which a lobe of known width must lie, where the product may be hidden under something
     broader, the way over which it changes is that width, or the distance if that is larger.
     """
-    steps = 0.5 * STEP ** np.arange(STEPS)
+    steps: FloatArray = 0.5 * STEP ** np.arange(float(STEPS))
     ways = np.array([(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)])
     foci: list[Focus] = []
     for index in sorted(range(len(peaks)), key=lambda k: -values[k]):

@@ -16,7 +16,7 @@ from radiokit.measure.lattice import kronecker
 from radiokit.worlds.budget import Budget
 from radiokit.worlds.integral import GUARD, expected_peaks, lobe_angle, product_of
 from radiokit.worlds.lookout import Lookout, look
-from radiokit.worlds.sampling import BLOCK, STRATEGIES, Sampler, best_sampling
+from radiokit.worlds.sampling import BLOCK, Sampler, best_sampling
 from radiokit.worlds.terms import DELTA_LIGHT, DELTA_LOBES, MAX_SAMPLES, Term
 
 __all__ = ["Cost", "foretell", "lookouts"]
@@ -30,7 +30,7 @@ LATTICES = (512, 2048)
 """Low-discrepancy samples from which the fall of their error is foretold."""
 
 PER_EVALUATION, PER_CALL, PER_SUM = 2.5e-7, 1e-3, 2e-4
-"""What an evaluation takes, a quadrature over one piece of a light before any, and a sum or closed form [s]."""
+"""What an evaluation takes, a quadrature over a piece of a light before any, and a sum or closed form [s]."""
 
 FIRST_RULES, CROWDED_RULES = 464, 532
 """Evaluations of the first three rules in a plain square, and in each part of one cut at a peak."""

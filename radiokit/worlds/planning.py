@@ -199,7 +199,9 @@ def explained(
     done = cost.evaluations
     if chosen in SAMPLED and cost.error is not None and cost.error > rtol:  # it stops before the tolerance
         most = budget.samples(best_sampling(term) if chosen == "qmc" else chosen, samples, 1 << 20)
-        done = min(done, np.inf if most is None else most * (2 if "mis" in (chosen, best_sampling(term)) else 1))
+        done = min(
+            done, np.inf if most is None else most * (2 if "mis" in (chosen, best_sampling(term)) else 1)
+        )
     return Row(
         _name(term),
         chosen,
@@ -261,9 +263,13 @@ def _why_quadrature(term: Term) -> str:
         return "the light fills the hemisphere, where the product is smooth in slope coordinates"
     seen = lookouts(term)
     if any(each.kinks for each in seen):
-        return "the horizon cuts the square from which the light is sampled: panels are refined along the kink"
+        return (
+            "the horizon cuts the square from which the light is sampled: panels are refined along the kink"
+        )
     if any(each.foci for each in seen):
-        return "the lobe is narrower than the light: nodes crowd around it in the square that samples the light"
+        return (
+            "the lobe is narrower than the light: nodes crowd around it in the square that samples the light"
+        )
     return "the light is narrower than the lobe: the product is smooth over the square that samples the light"
 
 

@@ -18,7 +18,15 @@ from radiokit.measure.montecarlo import mean
 from radiokit.worlds.budget import SHORTEST, Budget
 from radiokit.worlds.terms import MAX_SAMPLES, Term, times
 
-__all__ = ["BLOCK", "MIS_SOURCE", "STRATEGIES", "Sampler", "best_sampling", "monte_carlo", "sampling_is_better"]
+__all__ = [
+    "BLOCK",
+    "MIS_SOURCE",
+    "STRATEGIES",
+    "Sampler",
+    "best_sampling",
+    "monte_carlo",
+    "sampling_is_better",
+]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -36,7 +44,7 @@ BLOCK = 1 << 14
 """Samples between two looks at the clock."""
 
 PILOT = 512
-"""Samples of the other kind that foretell a variance, at most; a quarter of the samples if these are fewer."""
+"""Samples of the other kind that foretell a variance; a quarter of the samples if that is less."""
 
 RARE = 10.0
 """Expected hits below which samples of the material alone say too little about a light."""
@@ -53,7 +61,7 @@ def best_sampling(term: Term) -> str:
 
 @dataclass(frozen=True)
 class Sampler:
-    """Estimates of a term's radiance from uniform points, by a strategy: ``mc-bsdf``, ``mc-light``, ``mis``."""
+    """Estimates of a term's radiance from uniform points: by ``mc-bsdf``, ``mc-light`` or ``mis``."""
 
     term: Term
     strategy: str

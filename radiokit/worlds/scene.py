@@ -22,6 +22,7 @@ __all__ = ["Receiver", "check_emitter", "irradiance", "solid_angle"]
 
 FloatArray = npt.NDArray[np.float64]
 
+
 @dataclass(frozen=True)
 class Receiver:
     """A point on a surface: its position and its normal, which is normalised.

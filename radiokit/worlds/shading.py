@@ -89,8 +89,8 @@ def shade(
     Returns
     -------
     Estimate
-        Of shape () or (K,). ``converged`` is False when ``rtol`` was not reached; with a budget, the note then
-        says what was.
+        Of shape () or (K,). ``converged`` is False when ``rtol`` was not reached; ``note`` then says what was
+        within the budget.
 
     Raises
     ------
@@ -111,9 +111,7 @@ def shade(
     >>> round(float(shade(half, lights, (0.0, 0.6, 0.8))), 9)  # 0.5 · 1 + 0.5/π · π
     1.0
     """
-    _, terms = find_terms(
-        f, emitters, wo, normal=normal, position=position, method=method, rtol=rtol
-    )
+    _, terms = find_terms(f, emitters, wo, normal=normal, position=position, method=method, rtol=rtol)
     purse = Purse(seconds, evaluations, sum(not term.exact for term in terms))
     generator = np.random.default_rng(seed_from(rng))
     total: Estimate | None = None
@@ -206,7 +204,5 @@ def explain(
     integrals = sum(not term.exact for term in terms)
     purse = Purse(seconds, evaluations, integrals)
     share, time_share = purse.share(), None if seconds is None else seconds / max(integrals, 1)
-    rows = [
-        explained(term, choose(term, method, share), rtol, samples, share, time_share) for term in terms
-    ]
+    rows = [explained(term, choose(term, method, share), rtol, samples, share, time_share) for term in terms]
     return Plan(subject, rtol, tuple(rows))

@@ -48,9 +48,7 @@ class Scene:
 
     def applies(self, method: str) -> bool:
         """Return whether one of the methods of ``radiokit.shade`` can be used."""
-        return applies(
-            method, self.f, self.emitters, self.wo, normal=self.normal, position=self.position
-        )
+        return applies(method, self.f, self.emitters, self.wo, normal=self.normal, position=self.position)
 
     def shade(
         self,
