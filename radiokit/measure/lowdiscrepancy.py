@@ -217,7 +217,8 @@ class _Run:
         self.doublings += 1
         points = count * len(self.shifts)
         step = np.asarray(_STEP * self.largest / points)
-        step = np.where(self.hits < _RARE, np.maximum(step, np.sqrt(self.foretold / points)), step)
+        rare = self.stepped & (self.hits < _RARE)
+        step = np.where(rare, np.maximum(step, np.sqrt(self.foretold / points)), step)
         return _Spread(np.asarray(self.sums) / count, self.doublings, step)
 
     def _indices(self, done: int, count: int) -> Iterator[npt.NDArray[np.integer[Any]]]:

@@ -62,7 +62,7 @@ def lobe_angle(term: Term) -> float | None:
 
 
 def expected_peaks(term: Term) -> tuple[FloatArray, ...]:
-    """Return world directions (3,) of lobes: the mirror's, and ``wo`` for a lobe of which nothing is known."""
+    """Return world directions (3,) of lobes: the mirror's, and ``wo`` where nothing is known of the lobe."""
     mirror = term.receiver.to_world(term.wo * np.array([-1.0, -1.0, 1.0]))
     return (mirror,) if term.f.lobe_width() is not None else (mirror, term.receiver.to_world(term.wo))
 
@@ -117,6 +117,8 @@ def _over_square(term: Term, rtol: float, budget: Budget) -> Estimate:
         max_evaluations=most,
         deadline=budget.deadline,
     )
+    if found.evaluations == 1:  # no light is above the horizon
+        return found
     sampler = Sampler(term, "mis")
     values = sampler(kronecker(count, sampler.dimensions))
     means = values.reshape(16, -1, *term.shape).mean(axis=1)

@@ -23,13 +23,13 @@ __all__ = ["Cost", "foretell", "lookouts"]
 
 FloatArray = npt.NDArray[np.float64]
 
-PILOT = 1024
+PILOT = 512
 """Lattice samples from which a variance is foretold."""
 
 LATTICES = (512, 2048)
 """Low-discrepancy samples from which the fall of their error is foretold."""
 
-PER_EVALUATION, PER_CALL, PER_SUM = 2.5e-7, 1e-3, 2e-4
+PER_EVALUATION, PER_CALL, PER_SUM = 3e-7, 2e-3, 2e-4
 """What an evaluation takes, a quadrature over a piece of a light before any, and a sum or closed form [s]."""
 
 FIRST_RULES, CROWDED_RULES = 464, 532
@@ -37,6 +37,8 @@ FIRST_RULES, CROWDED_RULES = 464, 532
 
 DOME = 4500
 """Evaluations under a dome."""
+
+_ZENITH = 1 - 1e-15
 
 
 @dataclass(frozen=True)
@@ -116,6 +118,8 @@ def _random(sampler: Sampler, rtol: float) -> tuple[float, Callable[[float], flo
     variance = np.maximum(np.maximum(by_material, by_light), values.var(axis=0))
     mean = np.abs(values.mean(axis=0))
     ratio = _ratio(np.sqrt(variance), mean)
+    if not np.any(mean):  # nothing is seen: sampling does not stop before its limit
+        return math.inf, lambda count: ratio and math.inf
     needed = (ratio / rtol) ** 2
     if math.isfinite(needed):  # the error is looked at after 1, 2, 4, ... blocks
         needed = BLOCK * 2.0 ** math.ceil(math.log2(max(needed / BLOCK, 1.0)))
@@ -135,8 +139,10 @@ def _even(sampler: Sampler, rtol: float) -> tuple[float, Callable[[float], float
         for n in LATTICES
     ]
     ratios = [_ratio(each.error, each.value) for each in found]
+    if not np.any(found[-1].value):
+        return math.inf, lambda count: ratios[-1]
     if not all(0 < ratio < math.inf for ratio in ratios):
-        return (math.inf if any(ratio == math.inf for ratio in ratios) else 1024.0), lambda count: ratios[-1]
+        return 1024.0, lambda count: ratios[-1]
     rate = float(np.clip(math.log(ratios[0] / ratios[1]) / math.log(LATTICES[1] / LATTICES[0]), 0.5, 1.5))
     needed = LATTICES[1] * (ratios[1] / rtol) ** (1 / rate)
     # It must hold at two lattices in a row, each twice as large as the one before.
@@ -163,13 +169,20 @@ def lookouts(term: Term) -> list[Lookout]:
 
 def _quadrature(term: Term, rtol: float, budget: Budget, seconds: float | None) -> Cost:
     """Return what a quadrature takes, by the lobe's width, the light's size, and what bends in between."""
-    if term.light.dome(term.receiver.origin) is not None:
-        needed = float(DOME if term.f.smooth else 2 * DOME) * (1 if rtol >= 1e-7 else 4)
+    dome = term.light.dome(term.receiver.origin)
+    if dome is not None:
+        needed = (
+            1.0
+            if any(float(zenith @ term.receiver.axis) < -_ZENITH for zenith in dome)
+            else float(DOME if term.f.smooth else 2 * DOME) * (1 if rtol >= 1e-7 else 4)
+        )
         pieces = 1
     else:
         seen = lookouts(term)
         pieces = max(len(seen), 1)
-        needed = 2.0 * GUARD + sum(_in_square(each, term.f.smooth, rtol) for each in seen)
+        needed = (
+            1.0 if not seen else 2.0 * GUARD + sum(_in_square(each, term.f.smooth, rtol) for each in seen)
+        )
     limits = [math.inf] if budget.evaluations is None else [float(budget.evaluations)]
     limits += [] if seconds is None else [seconds / PER_EVALUATION]
     error = rtol if needed <= min(limits) else min(1.0, rtol * (needed / max(min(limits), 1.0)) ** 2)
@@ -184,5 +197,5 @@ def _in_square(seen: Lookout, smooth: bool, rtol: float) -> float:
     first = parts * (CROWDED_RULES if seen.foci else FIRST_RULES)
     finer = 1.0 if rtol >= 1e-5 else 2.0
     if not smooth:
-        finer *= 4.0 * max(1e-3 / rtol, 1.0) ** 0.25
+        finer = 2.0 * max(1e-3 / rtol, 1.0) ** 0.25
     return seen.evaluations + first * finer
