@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -24,12 +25,17 @@ from radiokit.emitters.point import Point
 from radiokit.facts.directions import frame, reflect, to_local, to_world, unit
 from radiokit.facts.errors import ParameterError, RadiokitError, UnknownNameError
 from radiokit.facts.estimate import rounding
+from radiokit.measure.lowdiscrepancy import mean as lattice_mean
 from radiokit.measure.lune import lune
+from radiokit.measure.montecarlo import mean
 from radiokit.measure.statistics import binomial_interval, sidak
 from radiokit.measure.warps import UniformCone
+from radiokit.worlds.cases.catalogue import case
 from radiokit.worlds.planning import METHODS
-from radiokit.worlds.scene import irradiance
+from radiokit.worlds.sampling import Sampler
+from radiokit.worlds.scene import Receiver, irradiance
 from radiokit.worlds.shading import explain, shade
+from radiokit.worlds.terms import SMOOTH, Term
 
 SAMPLED = ("mc-bsdf", "mc-light", "mis", "qmc")
 LEVEL = sidak(1e-3, 100)  # all statistical tests in this file
@@ -420,6 +426,88 @@ def test_planted_intervals_that_are_too_short_are_rejected(seed):
     assert not low <= 0.95 <= high
 
 
+def covered(name, method, samples, seed, count, **options):
+    """Of ``count`` answers to a case, how many 95 % intervals hold the truth."""
+    problem = case(name)
+    seeds = np.random.SeedSequence(seed).generate_state(count, dtype=np.uint64)
+    answers = [problem.scene.shade(method, samples=samples, rng=int(each)) for each in seeds]
+    return sum(answer.covers(problem.exact) for answer in answers)
+
+
+@pytest.mark.parametrize("method", ["mc-bsdf", "mc-light", "mis"])
+def test_intervals_of_500_seeds_cover_95_percent(method, seed):
+    hits = sum(
+        covered(name, method, 256, seed + k, 250)
+        for k, name in enumerate(("ggx-1-in-furnace-at-60deg", "ggx-1-under-bright-cell"))
+    )
+    assert 0.93 <= hits / 500 <= 0.97
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "lambert-under-sphere-at-100m",
+        "lambert-under-square-of-2cm",
+        "lambert-under-sliver",
+        "lambert-under-disk-huge",
+    ],
+)
+@pytest.mark.parametrize("method", ["mis", "qmc"])
+def test_rare_hits_and_rare_misses_are_foretold(name, method, seed):
+    """Material samples hardly ever meet a tiny light, or miss a huge one: the interval allows for that."""
+    _, high = binomial_interval(covered(name, method, 256, seed, 100), 100, level=1 - LEVEL)
+    assert high >= 0.95
+
+
+def test_planted_errors_without_what_is_foretold_are_too_small(seed):
+    """What samples show of their variance is 0 where the rare ones, which carry it, are not among them."""
+    problem = case("lambert-under-sphere-at-100m")
+    term = term_of(problem)
+    seeds = np.random.SeedSequence(seed).generate_state(50, dtype=np.uint64)
+    sampler = Sampler(term, "mis")
+    draw = lambda generator, n: sampler(generator.random((n, 4)))  # noqa: E731
+    plain = [mean(draw, samples=256, rng=int(each)) for each in seeds]
+    assert sum(answer.covers(problem.exact) for answer in plain) < 25
+
+
+def term_of(problem):
+    scene = problem.scene
+    receiver = Receiver(scene.normal, scene.position)
+    return Term(scene.f, scene.emitters[0], receiver, receiver.to_local(np.array(scene.wo)), SMOOTH)
+
+
+def test_samples_of_the_material_that_meet_no_light_say_so(seed):
+    problem = case("lambert-under-square-of-2cm")
+    found = problem.scene.shade("mc-bsdf", samples=1000, rng=seed)
+    assert not found.converged
+    assert "hit the light about 0.1" in found.note
+    assert abs(found.value - problem.exact) <= 4 * found.error
+    seen = case("lambert-under-square-of-2m").scene.shade("mc-bsdf", samples=1000, rng=seed)
+    assert seen.converged
+
+
+STEPS = ("phong-10-under-disk", "phong-10-under-sphere", "phong-10-under-sphere-at-mirror")
+
+
+@pytest.mark.parametrize("name", STEPS)
+def test_lattices_that_agree_by_chance_on_a_step_do_not_claim_too_much(name, seed):
+    """The light's edge is a step in one coordinate: sixteen counts of the points within it may agree."""
+    problem = case(name)
+    seeds = np.random.SeedSequence(seed).generate_state(60, dtype=np.uint64)
+    found = [problem.scene.shade("qmc", samples=1024, rng=int(each)) for each in seeds]
+    assert max(answer.ratio(problem.exact) for answer in found) < 5
+    _, high = binomial_interval(sum(answer.covers(problem.exact) for answer in found), 60, level=1 - LEVEL)
+    assert high >= 0.95
+
+
+def test_planted_lattices_without_regard_to_the_step_claim_too_much(seed):
+    problem = case("phong-10-under-disk")
+    sampler = Sampler(term_of(problem), "mis")
+    seeds = np.random.SeedSequence(seed).generate_state(60, dtype=np.uint64)
+    planted = [lattice_mean(sampler, dimensions=4, samples=1024, rng=int(each)) for each in seeds]
+    assert max(answer.ratio(problem.exact) for answer in planted) > 10
+
+
 @pytest.mark.parametrize("method", SAMPLED)
 def test_the_same_seed_gives_the_same_answer(method, seed):
     def run(rng, executor=None):
@@ -458,6 +546,58 @@ def test_sampling_stops_at_the_tolerance(seed):
     short = shade(Lambert(), [Constant()], (0, 0, 1), method="mis", samples=1000, rng=seed)
     assert short.evaluations == 1000
     assert short.converged
+
+
+# --- budgets ---
+
+
+BROAD, NARROW = Sun(half_angle=0.5), Sun(half_angle=0.01, direction=at(30, 2.0))
+
+
+@pytest.mark.parametrize("method", ["auto", "quadrature", "mc-bsdf", "mc-light", "mis", "qmc"])
+@pytest.mark.parametrize("evaluations", [100, 3000, 20_000])
+def test_a_budget_of_evaluations_is_kept(method, evaluations, seed):
+    f, lights = GGX(alpha=0.05), [BROAD, Constant(), NARROW]
+    found = shade(f, lights, at(20), method=method, rtol=1e-9, evaluations=evaluations, rng=seed)
+    spent = found.evaluations * (2 if "mis" in found.method else 1)
+    assert spent <= max(evaluations, 0) + 3 * 6000  # three terms, each by a search and the first rules
+    if method in SAMPLED:
+        assert spent <= max(2 * evaluations, 3 * 32)
+    assert found.converged or "of the asked" in found.note
+    if method != "quadrature" or evaluations > 3000:
+        exact = shade(f, lights, at(20), rtol=1e-8)
+        assert abs(found.value - exact.value) <= 5 * found.error + exact.error
+
+
+def test_what_a_budget_does_not_reach_is_said(seed):
+    found = shade(Lambert(), [BROAD], (0, 0, 1), method="mis", rtol=1e-6, evaluations=10_000, rng=seed)
+    assert not found.converged
+    assert found.evaluations == 5000
+    assert "reached ± " in found.note
+    assert "within 10000 evaluations" in found.note
+    ample = shade(GGX(alpha=0.3), [BROAD], at(20), rtol=1e-6, evaluations=10**6)
+    assert ample.converged
+    assert ample.value == shade(GGX(alpha=0.3), [BROAD], at(20), rtol=1e-6).value
+    exact = shade(Lambert(), [Constant()], (0, 0, 1), evaluations=1)
+    assert exact.method == "closed form"
+
+
+def test_a_budget_is_shared_among_the_terms(seed):
+    """Each gets an equal part of what is left: what the first does not need, the others may use."""
+    lights = [Constant(), BROAD, Point(position=(0, 0, 1), intensity=1.0)]
+    found = shade(spectral, lights, (0, 0, 1), method="mc-light", rtol=1e-9, evaluations=40_000, rng=seed)
+    assert found.evaluations == pytest.approx(40_000, rel=0.01)
+    one = shade(spectral, BROAD, (0, 0, 1), method="mc-light", rtol=1e-9, evaluations=40_000, rng=seed)
+    assert one.evaluations == 40_000
+
+
+@pytest.mark.parametrize("method", ["auto", "quadrature", "mis", "qmc"])
+def test_a_budget_of_time_is_kept(method, seed):
+    start = time.perf_counter()
+    found = shade(checkers, [BROAD, Constant()], at(20), method=method, rtol=1e-9, seconds=0.05, rng=seed)
+    assert time.perf_counter() - start < 3.0  # a bound that holds on a busy machine
+    assert not found.converged
+    assert "within 0.05 s" in found.note
 
 
 # --- degenerate input ---
@@ -502,6 +642,11 @@ BAD = [
     ("function", {"f": 3}),
     ("samples", {"emitters": [Constant()], "method": "mis", "samples": 0}),
     ("rng", {"rng": -1}),
+    ("seconds", {"seconds": 0.0}),
+    ("seconds", {"seconds": math.nan}),
+    ("seconds", {"seconds": "soon"}),
+    ("evaluations", {"evaluations": 0}),
+    ("evaluations", {"evaluations": 10.5}),
 ]
 
 
@@ -575,6 +720,52 @@ def test_the_plan_is_what_happens():
             for method in row.alternatives:
                 assert method in METHODS
                 shade(f, [light], at(30), method=method, samples=100, rng=1)
+
+
+FORETOLD = (
+    "ggx-1-in-furnace-at-60deg",
+    "ggx-1-under-bright-cell",
+    "lambert-under-disk-off-axis",
+    "phong-20-under-square",
+    "phong-10-under-sphere-at-mirror",
+    "lambert-under-square-tilted-much",
+)
+
+
+@pytest.mark.parametrize("name", FORETOLD)
+def test_costs_are_foretold_in_order_of_magnitude(name, seed):
+    scene = case(name).scene
+    place = {"normal": scene.normal, "position": scene.position}
+    for method, rtol in (("quadrature", 1e-3), ("quadrature", 1e-6), *((each, 1e-2) for each in SAMPLED)):
+        (row,) = explain(scene.f, scene.emitters, scene.wo, method=method, rtol=rtol, **place).rows
+        found = shade(scene.f, scene.emitters, scene.wo, method=method, rtol=rtol, rng=seed, **place)
+        spent = found.evaluations * (2 if "mis" in found.method else 1)
+        assert found.converged, method
+        assert 0.1 < row.evaluations / spent < 10, (method, rtol)
+        assert row.error <= rtol * 1.01
+        (again,) = explain(scene.f, scene.emitters, scene.wo, method=method, rtol=rtol, **place).rows
+        assert again == row
+
+
+def test_the_plan_says_what_the_alternatives_would_cost():
+    plan = explain(GGX(alpha=0.3), BROAD, at(20), rtol=1e-6)
+    (row,) = plan.rows
+    assert [cost.method for cost in row.costs] == list(row.alternatives) == list(SAMPLED)
+    by_name = {cost.method: cost for cost in row.costs}
+    assert by_name["mis"].evaluations > 1e9  # (σ/(rtol μ))²
+    assert 1e-5 < by_name["mis"].error < 1e-2  # with the 2²⁰ samples at which it stops
+    assert by_name["mis"].seconds > 60
+    assert row.seconds < 0.1
+    assert "mis: about" in str(plan)
+    assert "reaching ±" in str(plan)
+    data = json.loads(json.dumps(plan.to_json(), allow_nan=False))
+    assert data["rows"][0]["costs"][0]["method"] == "mc-bsdf"
+    few = explain(GGX(alpha=0.3), BROAD, at(20), rtol=1e-6, evaluations=1000)
+    assert few.rows[0].method == "qmc"
+    assert "budget" in few.rows[0].why
+    assert few.rows[0].evaluations <= 1000
+    quick = explain(GGX(alpha=0.3), BROAD, at(20), method="mis", seconds=1e-3)
+    assert quick.rows[0].error > by_name["mis"].error
 
 
 def test_a_plan_escapes_html():
