@@ -253,6 +253,28 @@ def test_a_bad_function_is_named():
 # What uses it
 
 
+@pytest.mark.parametrize("excess", [1e-5, 1e-3, 0.0123, 0.2])
+def test_a_step_in_one_coordinate_is_allowed_for(excess, seed):
+    """Nearly every shift counts the same points within it, so that their spread says little or nothing."""
+    exact = 0.75 + excess
+
+    def step(u):
+        return (u[:, 0] < exact) * 1.0
+
+    def both(u):
+        return np.stack([step(u), step(u)], axis=1)
+
+    blind = [mean(step, dimensions=2, samples=1024, rng=seed + k) for k in range(40)]
+    found = [mean(both, dimensions=2, samples=1024, rng=seed + k, stepped=True) for k in range(40)]
+    assert max(each.ratio(exact) for each in found) < 3.75
+    if excess == 1e-5:
+        assert max(each.ratio(exact) for each in blind) > 1e3  # planted: without the allowance
+    rare = mean(
+        lambda u: np.zeros((len(u), 2)), dimensions=2, samples=1024, rng=1, stepped=True, foretold=1e-4
+    )
+    assert rare.error.tolist() == [1e-2 / 32]
+
+
 @pytest.mark.parametrize("name", ["ggx-0.3-in-furnace-at-60deg", "ggx-0.05-in-furnace-at-89deg"])
 def test_albedo_by_lattices_is_right_and_better_than_by_random_points(name, seed):
     furnace = rk.case(name)

@@ -398,3 +398,32 @@ def test_arguments_out_of_range(arguments, message):
     with pytest.raises(ParameterError) as caught:
         mean(square, **{"samples": 100, **arguments})
     assert str(caught.value) == message
+
+
+# --- what no draw has shown ---
+
+
+def test_a_foretold_variance_counts_where_the_draws_show_less(seed):
+    """A draw of 1000 once in a million: none is among these, and the error says so all the same."""
+    p, size = 1e-6, 1e3
+
+    def draw(generator, n):
+        return 1.0 + size * (generator.random(n) < p)
+
+    exact, variance = 1.0 + p * size, size**2 * p * (1 - p)
+    blind = mean(draw, samples=1000, rng=seed)
+    found = mean(draw, samples=1000, rng=seed, foretold=variance)
+    assert not blind.covers(exact)  # planted: without it
+    assert found.covers(exact)
+    assert found.error == pytest.approx(np.sqrt(variance / 1000))
+    # Where the draws show their variance, it changes nothing.
+    plain = [
+        mean(lambda g, n: g.random(n), samples=1000, rng=seed, foretold=known).error for known in (0.0, 0.1)
+    ]
+    assert plain[0] == plain[1]
+
+
+def test_an_edge_that_no_draw_has_crossed_is_allowed_for(seed):
+    found = mean(lambda generator, n: np.ones(n), samples=1000, rng=seed, edge=True)
+    assert found.error == 2e-3
+    assert mean(lambda generator, n: np.ones(n), samples=1000, rng=seed).error < 1e-14

@@ -23,8 +23,12 @@ def bench(
     seed: Annotated[int, typer.Option(help="Seed of the Monte Carlo methods.")] = 0,
     figures: Annotated[Path, typer.Option(help="Folder of the work-precision diagram.")] = Path("figures"),
     no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw nothing.")] = False,
+    planner: Annotated[bool, typer.Option("--planner", help="Only auto beside every forced method.")] = False,
 ) -> None:
     """Measure accuracy and speed, beside other implementations; exit code 1 if something got worse."""
+    if planner:
+        _planner(json, quick, repeats, seed, None if no_figures else figures)
+        return
     from radiokit.faces.bench.compare import compare as find_changes
     from radiokit.faces.bench.compare import load
     from radiokit.faces.bench.run import bench as run
@@ -52,6 +56,48 @@ def bench(
         if earlier is not None and not changes:
             write(f"nothing is slower or less accurate than in {compare}")
     if changes or found.dishonest:
+        raise typer.Exit(1)
+
+
+def _planner(json: bool, quick: bool, repeats: int | None, seed: int, figures: Path | None) -> None:
+    """Measure ``auto`` on the cases of shading; exit code 1 if it misses a closed form or takes too long."""
+    from radiokit.faces.bench.planner import LIMIT, QUICK, draw, measure, table
+
+    with progress_bar("measuring", not json) as progress:
+        found = measure(
+            QUICK if quick else None, repeats=repeats or (3 if quick else 7), seed=seed, progress=progress
+        )
+    worst = max(found, key=lambda each: each.ratio)
+    missed = [each for each in found if each.missed]
+    files: list[str] = []
+    if figures is not None and not quick:
+        files = [str(draw(found, figures / "planner.png")), str(figures / "planner.md")]
+        Path(files[1]).write_text(table(found), encoding="utf-8")
+    if json:
+        data = {"choices": [each.to_json() for each in found], "limit": LIMIT, "figures": files}
+        show_json(data)
+    else:
+        ordered = sorted(found, key=lambda each: -each.ratio)
+        show_table(
+            "auto beside the fastest method that could be forced, the worst first",
+            ("case", "tolerance", "auto took", "ms", "best forced", "ms", "auto / best"),
+            [
+                (
+                    each.case,
+                    f"{each.rtol:g}",
+                    each.method,
+                    f"{1e3 * each.seconds:.3g}",
+                    each.best,
+                    f"{1e3 * each.best_seconds:.3g}",
+                    f"{each.ratio:.2f}",
+                )
+                for each in (ordered if quick else ordered[:30])
+            ],
+        )
+        write(f"auto is at worst {worst.ratio:.2f} times slower: {worst.case}, {worst.rtol:g}")
+        for name in files:
+            write(f"written: {name}")
+    if missed or worst.ratio > LIMIT:
         raise typer.Exit(1)
 
 

@@ -17,9 +17,12 @@ from radiokit.facts.jsonable import jsonable
 from radiokit.worlds.cases.catalogue import Case, case, list_cases
 from radiokit.worlds.shading import shade
 
-__all__ = ["LIMIT", "TOLERANCES", "Choice", "draw", "measure", "table"]
+__all__ = ["LIMIT", "QUICK", "TOLERANCES", "Choice", "draw", "measure", "table"]
 
 TOLERANCES = (1e-3, 1e-6)
+
+QUICK = ("ggx-0.3-in-furnace-at-60deg", "lambert-under-disk", "phong-20-under-octant")
+"""Cases of a run for continuous integration."""
 
 LIMIT = 2.0
 """How many times slower than the best forced method ``auto`` may be."""
