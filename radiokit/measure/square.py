@@ -142,6 +142,7 @@ def crowded_square(
     kinks: bool = False,
     smooth: bool = True,
     max_evaluations: int = 2_000_000,
+    refinement: int = 2_000_000,
     deadline: float = np.inf,
 ) -> Estimate:
     """Integrate over the unit square, crowding nodes at known peaks.
@@ -165,6 +166,8 @@ def crowded_square(
         them may be small by chance.
     max_evaluations : int
         A budget, kept to the points of one rule or one round of refinement.
+    refinement : int
+        What of it may be used to refine panels.
     deadline : float
         When to stop, by ``time.perf_counter`` [s].
 
@@ -195,7 +198,7 @@ def crowded_square(
         found = replace(found, error=doubt * found.error)
         spent = found.evaluations
     method = "Gauss-Legendre"
-    left = max_evaluations - spent
+    left = min(max_evaluations - spent, refinement)
     if found is None or (not found.converged and left > 0 and time.perf_counter() < deadline):
         panels = KINKED if kinks and left > KINKED**2 * cells.count * PANEL else 2
         more = refine(at, cells.count, rtol=rtol, max_evaluations=left, deadline=deadline, first=panels)

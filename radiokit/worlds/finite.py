@@ -42,6 +42,7 @@ def over_light(
     towards: Sequence[FloatArray] = (),
     smooth: bool = True,
     max_evaluations: int = MOST,
+    refinement: int = MOST,
     deadline: float = np.inf,
 ) -> Estimate:
     """Integrate over a light, piece by piece; where it names no pieces, as a whole in which something jumps.
@@ -62,7 +63,7 @@ def over_light(
         World directions near which it may be.
     smooth : bool
         Whether the product is known to have no kinks but those that its setting makes.
-    max_evaluations, deadline
+    max_evaluations, refinement, deadline
         Budgets, as of ``crowded_square``.
     """
     found: list[Estimate] = []
@@ -78,7 +79,12 @@ def over_light(
         value = product(piece)
         seen = look(piece, receiver, value if peaked else None, width=width, towards=towards)
         seen = replace(seen, kinks=seen.kinks or given is None)
-        found.append(_over_piece(value, piece, receiver, seen, rtol, smooth, max(share, _LEAST), until))
+        limits: dict[str, Any] = {
+            "max_evaluations": max(share, _LEAST),
+            "refinement": refinement,
+            "deadline": until,
+        }
+        found.append(_over_piece(value, piece, receiver, seen, rtol=rtol, smooth=smooth, **limits))
     total = reduce(operator.add, found)
     converged = bool(np.all(total.error <= rtol * np.abs(total.value)))
     return replace(total, converged=converged, note="" if converged else total.note)
@@ -89,10 +95,9 @@ def _over_piece(
     piece: Emitter,
     receiver: Receiver,
     seen: Lookout,
-    rtol: float,
-    smooth: bool,
-    most: int,
-    deadline: float,
+    *,
+    max_evaluations: int,
+    **options: Any,
 ) -> Estimate:
     """Integrate over the square of a single piece."""
 
@@ -104,13 +109,11 @@ def _over_piece(
 
     found = crowded_square(
         integrand,
-        rtol=rtol,
         axes=seen.axes,
         foci=seen.foci,
         kinks=seen.kinks,
-        smooth=smooth,
-        max_evaluations=most - seen.evaluations,
-        deadline=deadline,
+        max_evaluations=max_evaluations - seen.evaluations,
+        **options,
     )
     error = found.error + getattr(piece, "precision", 0.0) * np.abs(found.value)
     if seen.kinks and not np.any(found.value):

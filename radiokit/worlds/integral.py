@@ -20,7 +20,7 @@ from radiokit.worlds.finite import MOST, over_light
 from radiokit.worlds.sampling import Sampler
 from radiokit.worlds.terms import Term
 
-__all__ = ["GUARD", "expected_peaks", "integrate", "lobe_angle", "product_of"]
+__all__ = ["GUARD", "expected_peaks", "integrate", "lobe_angle", "patience", "product_of"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -36,12 +36,26 @@ _CAREFUL = 0.7  # share of the time that is planned for
 _LEAST = 1024  # evaluations that a quadrature gets in any case
 
 
-def integrate(term: Term, rtol: float, budget: Budget | None = None) -> Estimate:
-    """Integrate by the rule that fits the light: hemisphere, lune, or the light's own square."""
+def patience(rtol: float) -> int:
+    """Return the evaluations after which the refinement of panels over a light is better given up.
+
+    Low-discrepancy samples need a small multiple of 1/rtol. Where the product jumps, panels need more.
+
+    >>> patience(1e-2), patience(1e-3)
+    (8000, 20000)
+    """
+    return max(8_000, round(20.0 / rtol))
+
+
+def integrate(term: Term, rtol: float, budget: Budget | None = None, most: int | None = None) -> Estimate:
+    """Integrate by the rule that fits the light: hemisphere, lune, or the light's own square.
+
+    ``most`` limits the evaluations by which panels over a light's square are refined.
+    """
     budget = Budget() if budget is None else budget
     dome = term.light.dome(term.receiver.origin)
     if dome is None:
-        return _over_square(term, rtol, budget)
+        return _over_square(term, rtol, budget, MOST if most is None else most)
     most = min(_affordable(term, budget), DOME_MOST)
     width = term.f.lobe_width()
     if not dome:
@@ -90,7 +104,7 @@ def _affordable(term: Term, budget: Budget) -> int:
     return int(np.clip(left / (now - start) * _PROBE, _LEAST, most))
 
 
-def _over_square(term: Term, rtol: float, budget: Budget) -> Estimate:
+def _over_square(term: Term, rtol: float, budget: Budget, refinement: int) -> Estimate:
     """Integrate over the square from which the light samples its directions.
 
     A lobe much narrower than the light can slip between the nodes of every rule, so that they agree on a
@@ -115,6 +129,7 @@ def _over_square(term: Term, rtol: float, budget: Budget) -> Estimate:
         towards=expected_peaks(term),
         smooth=term.f.smooth,
         max_evaluations=most,
+        refinement=refinement,
         deadline=budget.deadline,
     )
     if found.evaluations == 1:  # no light is above the horizon

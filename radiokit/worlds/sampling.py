@@ -193,14 +193,14 @@ class Sampler:
 
 
 def sampling_is_better(term: Term, found: Estimate, samples: int | None, budget: Budget) -> bool:
-    """Return whether ``mis`` may reach a smaller error than a quadrature did, by a few of its samples."""
+    """Return whether samples may reach a smaller error than a quadrature did, by a few of them."""
     sampler = Sampler(term, "mis")
     most = budget.samples("mis", samples, MAX_SAMPLES)
     if most is None:
         return budget.seconds_left() != SHORTEST
     values = sampler(kronecker(PILOT, sampler.dimensions))
     error = values.std(axis=0) / np.sqrt(max(most, 1))
-    return bool(np.all(2 * error < found.error))
+    return bool(np.all(error < 2 * found.error))  # lattices err less than random samples do
 
 
 def monte_carlo(

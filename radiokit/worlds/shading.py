@@ -14,7 +14,7 @@ from radiokit.contracts.emitter import Emitter
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.montecarlo import seed_from
 from radiokit.worlds.budget import Budget, Purse
-from radiokit.worlds.integral import integrate
+from radiokit.worlds.integral import integrate, patience
 from radiokit.worlds.planning import Plan, choose, explained, find_terms
 from radiokit.worlds.sampling import monte_carlo, sampling_is_better
 from radiokit.worlds.terms import SMOOTH, Term
@@ -144,13 +144,13 @@ def _compute(
     options: dict[str, Any] = {"rtol": rtol, "samples": samples, "rng": rng, "executor": executor}
     if chosen != "quadrature":
         return monte_carlo(term, chosen, budget=budget, **options)
-    found = integrate(term, rtol, budget)
+    found = integrate(term, rtol, budget, patience(rtol) if method == "auto" else None)
     left = budget.less(found.evaluations)
     if found.converged or method != "auto" or not sampling_is_better(term, found, samples, left):
         return found
     # What quadrature cannot resolve is left to Monte Carlo.
-    sampled = monte_carlo(term, "mis", budget=left, **options)
-    if np.all(SURER * sampled.error < found.error):
+    sampled = monte_carlo(term, "qmc", budget=left, **options)
+    if sampled.converged or np.all(SURER * sampled.error < found.error):
         note = f"quadrature reached only ± {np.max(found.error):.2g}: {found.note}"
         best, other = sampled, found
     else:
