@@ -142,7 +142,7 @@ def mean(
     notes = []
     if count < most and not reached:
         due = "" if samples is None else f" of {replicates * most}"
-        notes.append(f"stopped after {run.evaluations}{due} samples: {seconds} s were up")
+        notes.append(f"stopped after {run.evaluations}{due} samples: {seconds:.3g} s were up")
     if rtol is not None and not reached:
         notes.append(
             f"rtol = {rtol} was not reached with {replicates * count} samples{but(found.value, found.error)}"

@@ -172,7 +172,7 @@ def mean(
     notes = []
     if total.count < most and not reached:
         wanted = "" if samples is None else f" of {samples}"
-        notes.append(f"stopped after {total.count}{wanted} samples: {seconds} s were up")
+        notes.append(f"stopped after {total.count}{wanted} samples: {seconds:.3g} s were up")
     if rtol is not None and not reached:
         notes.append(f"rtol = {rtol} was not reached with {total.count} samples{but(total.mean, error)}")
     if not np.any(total.low) and not np.any(total.high):

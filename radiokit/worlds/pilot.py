@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ from radiokit.worlds.lookout import Lookout, look
 from radiokit.worlds.sampling import BLOCK, Sampler, best_sampling
 from radiokit.worlds.terms import DELTA_LIGHT, DELTA_LOBES, MAX_SAMPLES, Term
 
-__all__ = ["Cost", "foretell", "lookouts"]
+__all__ = ["Cost", "Pilot", "foretell"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -45,14 +46,22 @@ _ZENITH = 1 - 1e-15
 class Cost:
     """What a method is expected to take for a tolerance: all of it in order of magnitude.
 
-    ``evaluations`` of the material and ``seconds`` [s] are what the tolerance needs, and ``error`` the
-    relative error that is reached within the limits of the call; None where it is that of rounding.
+    ``evaluations`` of the material and ``seconds`` [s] are what the tolerance needs, ``spent`` is how many
+    evaluations the limits of the call allow of them, and ``error`` the relative error that is then reached;
+    None where it is that of rounding.
     """
 
     method: str
     evaluations: float
     seconds: float
     error: float | None = None
+    spent: float = 0.0
+
+    @property
+    def limited(self) -> Cost:
+        """What the method takes within the limits of the call."""
+        seconds = self.seconds * (self.spent / self.evaluations if self.evaluations > 0 else 1.0)
+        return replace(self, evaluations=self.spent, seconds=max(seconds, min(self.seconds, PER_CALL)))
 
     def to_json(self) -> dict[str, Any]:
         """Return the cost as JSON-ready data."""
@@ -82,19 +91,37 @@ def _one_digit(value: float) -> str:
     return f"{float(f'{value:.0e}'):g}"
 
 
+@dataclass(frozen=True)
+class Pilot:
+    """A term, and what a quadrature sees in the pieces of its light."""
+
+    term: Term
+
+    @cached_property
+    def lookouts(self) -> list[Lookout]:
+        """What is seen in the squares of a finite light's pieces."""
+        term, receiver = self.term, self.term.receiver
+        product, towards = product_of(term), expected_peaks(term)
+        return [
+            look(piece, receiver, product(piece), width=lobe_angle(term), towards=towards)
+            for piece in term.light.pieces(receiver.origin, receiver.axis) or ()
+        ]
+
+
 def foretell(
-    term: Term, method: str, rtol: float, samples: int | None, budget: Budget, seconds: float | None
+    pilot: Pilot, method: str, rtol: float, samples: int | None, budget: Budget, seconds: float | None
 ) -> Cost:
     """Return what a method is expected to take, and to reach within the limits."""
+    term = pilot.term
     if method == "sum":
         count = len(term.lobes) if term.part == DELTA_LOBES else 0
         if term.part == DELTA_LIGHT and not term.only_delta:
             count = len(term.light.incident(term.receiver.origin)[0])
-        return Cost(method, count, PER_SUM)
+        return Cost(method, count, PER_SUM, spent=count)
     if method == "closed form":
         return Cost(method, 0, PER_SUM)
     if method == "quadrature":
-        return _quadrature(term, rtol, budget, seconds)
+        return _quadrature(pilot, rtol, budget, seconds)
     strategy = best_sampling(term) if method == "qmc" else method
     each = 2 if strategy == "mis" else 1
     law = _even if method == "qmc" else _random
@@ -108,7 +135,8 @@ def foretell(
     if samples is not None:
         needed = limit
     drawn = max(1.0, min(needed, limit))
-    return Cost(method, each * needed, each * needed * PER_EVALUATION + PER_CALL, error_of(drawn))
+    seconds = each * needed * PER_EVALUATION + PER_CALL
+    return Cost(method, each * needed, seconds, error_of(drawn), each * drawn)
 
 
 def _random(sampler: Sampler, rtol: float) -> tuple[float, Callable[[float], float]]:
@@ -157,18 +185,9 @@ def _ratio(error: Any, value: Any) -> float:
     return float(np.max(np.where(error > 0, share, 0.0)))
 
 
-def lookouts(term: Term) -> list[Lookout]:
-    """Return what a quadrature sees in the pieces of a finite light."""
-    receiver = term.receiver
-    product, towards = product_of(term), expected_peaks(term)
-    return [
-        look(piece, receiver, product(piece), width=lobe_angle(term), towards=towards)
-        for piece in term.light.pieces(receiver.origin, receiver.axis) or ()
-    ]
-
-
-def _quadrature(term: Term, rtol: float, budget: Budget, seconds: float | None) -> Cost:
+def _quadrature(pilot: Pilot, rtol: float, budget: Budget, seconds: float | None) -> Cost:
     """Return what a quadrature takes, by the lobe's width, the light's size, and what bends in between."""
+    term = pilot.term
     dome = term.light.dome(term.receiver.origin)
     if dome is not None:
         needed = (
@@ -178,7 +197,7 @@ def _quadrature(term: Term, rtol: float, budget: Budget, seconds: float | None) 
         )
         pieces = 1
     else:
-        seen = lookouts(term)
+        seen = pilot.lookouts
         pieces = max(len(seen), 1)
         needed = (
             1.0 if not seen else 2.0 * GUARD + sum(_in_square(each, term.f.smooth, rtol) for each in seen)
@@ -186,7 +205,8 @@ def _quadrature(term: Term, rtol: float, budget: Budget, seconds: float | None) 
     limits = [math.inf] if budget.evaluations is None else [float(budget.evaluations)]
     limits += [] if seconds is None else [seconds / PER_EVALUATION]
     error = rtol if needed <= min(limits) else min(1.0, rtol * (needed / max(min(limits), 1.0)) ** 2)
-    return Cost("quadrature", needed, pieces * PER_CALL + needed * PER_EVALUATION, error)
+    taken = pieces * PER_CALL + needed * PER_EVALUATION
+    return Cost("quadrature", needed, taken, error, min(needed, *limits))
 
 
 def _in_square(seen: Lookout, smooth: bool, rtol: float) -> float:

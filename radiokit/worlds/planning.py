@@ -15,7 +15,7 @@ from radiokit.contracts.emitter import Emitter
 from radiokit.facts.directions import check_directions
 from radiokit.facts.errors import ParameterError, RadiokitError, UnknownNameError
 from radiokit.worlds.budget import Budget
-from radiokit.worlds.pilot import Cost, foretell, lookouts
+from radiokit.worlds.pilot import Cost, Pilot, foretell
 from radiokit.worlds.sampling import best_sampling
 from radiokit.worlds.scene import Receiver, check_emitter
 from radiokit.worlds.terms import DELTA_LIGHT, DELTA_LOBES, SMOOTH, Term
@@ -195,18 +195,14 @@ def explained(
 ) -> Row:
     """Return the row of a term: the method, why it was chosen, what it costs, and what others would."""
     others = tuple(option for option in _options(term) if option != chosen)
-    cost, *costs = (foretell(term, each, rtol, samples, budget, seconds) for each in (chosen, *others))
-    done = cost.evaluations
-    if chosen in SAMPLED and cost.error is not None and cost.error > rtol:  # it stops before the tolerance
-        most = budget.samples(best_sampling(term) if chosen == "qmc" else chosen, samples, 1 << 20)
-        done = min(
-            done, np.inf if most is None else most * (2 if "mis" in (chosen, best_sampling(term)) else 1)
-        )
+    pilot = Pilot(term)
+    cost, *costs = (foretell(pilot, each, rtol, samples, budget, seconds) for each in (chosen, *others))
+    cost = cost.limited
     return Row(
         _name(term),
         chosen,
-        _why(term, chosen, budget),
-        int(min(done, 1e18)),
+        _why(pilot, chosen, budget),
+        round(cost.evaluations),
         others,
         term,
         cost.seconds,
@@ -232,7 +228,8 @@ def _name(term: Term) -> str:
     return f"{term.light.name}, {term.part}"
 
 
-def _why(term: Term, method: str, budget: Budget) -> str:
+def _why(pilot: Pilot, method: str, budget: Budget) -> str:
+    term = pilot.term
     if method == "sum":
         if term.part == DELTA_LIGHT:
             if term.only_delta:
@@ -244,7 +241,7 @@ def _why(term: Term, method: str, budget: Budget) -> str:
     if method == "closed form":
         return "the material is diffuse and the emitter's irradiance has a closed form: ρE/π"
     if method == "quadrature":
-        return _why_quadrature(term)
+        return _why_quadrature(pilot)
     if method == "qmc" and budget.evaluations is not None and budget.evaluations < ROUGH:
         return f"low-discrepancy points, put to {best_sampling(term)}, make most of so small a budget"
     return {
@@ -255,13 +252,14 @@ def _why(term: Term, method: str, budget: Budget) -> str:
     }[method]
 
 
-def _why_quadrature(term: Term) -> str:
+def _why_quadrature(pilot: Pilot) -> str:
+    term = pilot.term
     dome = term.light.dome(term.receiver.origin)
     if dome is not None:
         if dome:
             return "the sky's and the surface's horizons bound a lune, in which the product is smooth"
         return "the light fills the hemisphere, where the product is smooth in slope coordinates"
-    seen = lookouts(term)
+    seen = pilot.lookouts
     if any(each.kinks for each in seen):
         return (
             "the horizon cuts the square from which the light is sampled: panels are refined along the kink"
