@@ -17,7 +17,7 @@ from radiokit.measure.lune import lune
 from radiokit.measure.quadrature import hemisphere
 from radiokit.worlds.budget import Budget
 from radiokit.worlds.finite import MOST, over_light
-from radiokit.worlds.sampling import Sampler
+from radiokit.worlds.sampling import ZENITH, Sampler
 from radiokit.worlds.terms import Term
 
 __all__ = ["GUARD", "expected_peaks", "integrate", "lobe_angle", "patience", "product_of"]
@@ -58,7 +58,7 @@ def integrate(term: Term, rtol: float, budget: Budget | None = None, most: int |
         return _over_square(term, rtol, budget, MOST if most is None else most)
     most = min(_affordable(term, budget), DOME_MOST)
     width = term.f.lobe_width()
-    if not dome:
+    if all(float(zenith @ term.receiver.axis) > ZENITH for zenith in dome):
         return hemisphere(
             term.reflected, wo=term.wo, width=width, rtol=rtol, smooth=term.f.smooth, max_evaluations=most
         )

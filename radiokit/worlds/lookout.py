@@ -27,14 +27,14 @@ GRID = 16
 EDGE = 33
 """Places along each edge of the square."""
 
-LEVELS, ZOOM, SHRINK = 8, 11, 4.0
+LEVELS, ZOOM, SHRINK = 9, 9, 3.5
 """Rounds by which a peak is closed in on, places along each axis in each, and the factor between them."""
 
 CLOSE, HAIR = 0.25, 1e-5
 """A peak is closed in on until the places extend over less than this share of its width, and what stands for
 a width that is not known [rad]."""
 
-STEPS, STEP = 40, 0.6
+STEPS, STEP = 30, 0.5
 """Steps from a peak outwards at which its width is looked for, and the factor from one to the next."""
 
 SLOPE = 1.5

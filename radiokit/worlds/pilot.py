@@ -17,7 +17,7 @@ from radiokit.measure.lattice import kronecker
 from radiokit.worlds.budget import Budget
 from radiokit.worlds.integral import GUARD, expected_peaks, lobe_angle, product_of
 from radiokit.worlds.lookout import Lookout, look
-from radiokit.worlds.sampling import BLOCK, Sampler, best_sampling
+from radiokit.worlds.sampling import BLOCK, ZENITH, Sampler, best_sampling
 from radiokit.worlds.terms import DELTA_LIGHT, DELTA_LOBES, MAX_SAMPLES, Term
 
 __all__ = ["Cost", "Pilot", "foretell"]
@@ -38,8 +38,6 @@ FIRST_RULES, CROWDED_RULES = 464, 532
 
 DOME = 4500
 """Evaluations under a dome."""
-
-_ZENITH = 1 - 1e-15
 
 
 @dataclass(frozen=True)
@@ -192,7 +190,7 @@ def _quadrature(pilot: Pilot, rtol: float, budget: Budget, seconds: float | None
     if dome is not None:
         needed = (
             1.0
-            if any(float(zenith @ term.receiver.axis) < -_ZENITH for zenith in dome)
+            if any(float(zenith @ term.receiver.axis) < -ZENITH for zenith in dome)
             else float(DOME if term.f.smooth else 2 * DOME) * (1 if rtol >= 1e-7 else 4)
         )
         pieces = 1

@@ -22,6 +22,7 @@ __all__ = [
     "BLOCK",
     "MIS_SOURCE",
     "STRATEGIES",
+    "ZENITH",
     "Sampler",
     "best_sampling",
     "monte_carlo",
@@ -49,7 +50,9 @@ PILOT = 512
 RARE = 10.0
 """Expected hits below which samples of the material alone say too little about a light."""
 
-_ZENITH = 1 - 1e-15  # cosine of a tilt that hides nothing
+ZENITH = 1 - 1e-15
+"""Cosine of a tilt that hides nothing."""
+
 _SAME_DIRECTION = 1e-9  # a sample this near a delta lobe came from it: any other does so once in 1e18
 
 
@@ -77,7 +80,7 @@ class Sampler:
     def edged(self) -> bool:
         """Whether some of the material's samples may miss the light."""
         dome = self.term.light.dome(self.term.receiver.origin)
-        return dome is None or any(float(zenith @ self.term.receiver.axis) < _ZENITH for zenith in dome)
+        return dome is None or any(float(zenith @ self.term.receiver.axis) < ZENITH for zenith in dome)
 
     def __call__(self, u: FloatArray) -> FloatArray:
         """Return the estimates (N,) or (N, K) of points u (N, dimensions)."""

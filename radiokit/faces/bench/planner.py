@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from radiokit.faces.bench.timing import interleave
 from radiokit.facts.estimate import Estimate
 from radiokit.facts.jsonable import jsonable
 from radiokit.worlds.cases.catalogue import Case, case, list_cases
@@ -29,6 +28,9 @@ LIMIT = 2.0
 
 GLIMPSE = 0.02
 """Seconds that a Monte Carlo method gets; what it would need for the tolerance follows from its error."""
+
+LONG_ENOUGH, WARM = 4e-3, 3
+"""Seconds that are timed at a time, and calls whose quickest tells how many calls that takes."""
 
 AGAIN = 1.4
 """A ratio above this is measured again, thrice as often: the largest of many is mostly noise."""
@@ -105,16 +107,18 @@ def _choice(problem: Case, rtol: float, repeats: int, seed: int) -> Choice:
     forced = [method for method in problem.methods if scene.applies(method)]
     whole = ("sum", "closed form", "quadrature")
     limits = {method: None if method in whole else GLIMPSE for method in forced}
+    for method in forced:
+        call(method, limits[method])(0)  # what is done once for all is not timed
     glimpses = {method: _needed(method, *_timed(call(method, limits[method])), rtol) for method in forced}
     rivals = sorted(forced, key=lambda method: glimpses[method])[:RIVALS]
-    timings = interleave([call("auto"), *(call(method, limits[method]) for method in rivals)], repeats)
+    timings = _alternate([call("auto"), *(call(method, limits[method]) for method in rivals)], repeats)
     times = [
-        [_needed(method, each, seconds, rtol) for each, seconds in zip(t.results, t.seconds, strict=True)]
-        for method, t in zip(("auto", *rivals), timings, strict=True)
+        [_needed(method, found, seconds, rtol) for found, seconds in timing]
+        for method, timing in zip(("auto", *rivals), timings, strict=True)
     ]
     middle = [float(np.median(each)) for each in times]
     best = int(np.argmin(middle[1:]))
-    taken = timings[0].results[-1].method
+    taken = timings[0][-1][0].method
     closed = all(part in ("sum", "closed form") or "integral along" in part for part in taken.split(" + "))
     return Choice(
         case=problem.name,
@@ -129,11 +133,23 @@ def _choice(problem: Case, rtol: float, repeats: int, seed: int) -> Choice:
     )
 
 
-def _timed(call: Callable[[int], Estimate]) -> tuple[Estimate, float]:
-    call(0)
+def _alternate(
+    calls: Sequence[Callable[[int], Estimate]], repeats: int
+) -> list[list[tuple[Estimate, float]]]:
+    """Return the answers and seconds of calls that alternate, each timed for a few milliseconds."""
+    counts = [math.ceil(LONG_ENOUGH / min(_timed(call)[1] for _ in range(WARM))) for call in calls]
+    found: list[list[tuple[Estimate, float]]] = [[] for _ in calls]
+    for repeat in range(repeats):
+        for each, call, count in zip(found, calls, counts, strict=True):
+            each.append(_timed(call, repeat, count))
+    return found
+
+
+def _timed(call: Callable[[int], Estimate], repeat: int = 0, count: int = 1) -> tuple[Estimate, float]:
     start = time.perf_counter()
-    found = call(0)
-    return found, time.perf_counter() - start
+    for _ in range(count):
+        found = call(repeat)
+    return found, (time.perf_counter() - start) / count
 
 
 def _needed(method: str, found: Estimate, seconds: float, rtol: float) -> float:
