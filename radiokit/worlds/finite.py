@@ -86,7 +86,7 @@ def over_light(
         }
         found.append(_over_piece(value, piece, receiver, seen, rtol=rtol, smooth=smooth, **limits))
     total = reduce(operator.add, found)
-    converged = bool(np.all(total.error <= rtol * np.abs(total.value)))
+    converged = total.converged or bool(np.all(total.error <= rtol * np.abs(total.value)))
     return replace(total, converged=converged, note="" if converged else total.note)
 
 
