@@ -185,8 +185,9 @@ class _Spread:
         floor = np.finfo(np.float64).eps * (4.0 + doublings) * np.abs(self.value)
         self.error = np.hypot(np.maximum(spread * student_widening(replicates - 1), step), floor)
         most = _OUTLIER * (replicates - 1) / replicates
-        # At the level of rounding the spread is that of a few last places, and no cause for doubt.
-        self.outlier = bool(np.any((off.max(axis=0) > most * total) & (spread > 4 * floor)))
+        # At the level of rounding, or of a point on an edge, the spread is no cause for doubt.
+        loud = (spread > 4 * floor) & (spread * student_widening(replicates - 1) > step)
+        self.outlier = bool(np.any((off.max(axis=0) > most * total) & loud))
 
     def within(self, rtol: float, all_zero: bool) -> bool:
         return not (all_zero or self.outlier) and bool(np.all(self.error <= rtol * np.abs(self.value)))

@@ -32,6 +32,7 @@ _FIRST_LOOK = 4096  # samples of a ``BlockDraw`` before a tolerance is looked at
 _IN_FLIGHT = 256  # blocks handed to an executor at a time: results are small, and so stays the memory
 _FORETOLD = 2.0  # times the sample's variance: below it the sample is as good a witness
 _UNSEEN = 2.0  # draws' worth of what N draws did not meet; −ln(5 %)/1.96 at least
+_EXPLAINED = 4.0  # times the variance that was foretold: up to it one sample may carry what was seen
 _DOMINANCE = 0.1  # above this share of the variance in one sample, the central limit is not near
 
 
@@ -256,11 +257,12 @@ def _name(draw: Draw | BlockDraw) -> str:
 
 
 def _error(total: Moments, blocks: int, foretold: Any, edge: bool) -> tuple[Any, Any]:
-    """Return the standard error, not less than the rounding of the mean, and whether it was foretold."""
+    """Return the standard error, not less than the mean's rounding, and whether it is no surprise."""
     rounding = np.finfo(np.float64).eps * (4.0 + np.sqrt(blocks))
     floor = max(rounding, _UNSEEN / total.count if edge else 0.0) * np.abs(total.mean)
-    settled = np.asarray(foretold) > _FORETOLD * total.variance
-    spread = np.where(settled, np.sqrt(np.asarray(foretold) / total.count), total.standard_error)
+    known = np.asarray(foretold)
+    spread = np.where(known > _FORETOLD * total.variance, np.sqrt(known / total.count), total.standard_error)
+    settled = known * _EXPLAINED > total.variance
     return (np.maximum(spread, floor) if edge else np.hypot(spread, floor))[()], settled
 
 

@@ -27,9 +27,12 @@ PANEL = FINE * FINE + COARSE * COARSE
 LEFT = 0.1
 """Share of the whole error that may stay in the panels that are not refined next."""
 
-SAFETY, FEW = 2.0, 3.0
+SAFETY, FEW = 4.0, 6.0
 """Factors on the sum of the panels' differences, and on the root of the sum of their squares: on few panels,
 or where a kink crosses all of them alike, they may be small by chance."""
+
+HOPE = 4.0
+"""Times the budget that a run may be foretold to need without being given up: the error falls unevenly."""
 
 ROUNDS = 4
 """Rounds after which the cost of reaching the tolerance is foretold from how the error falls."""
@@ -184,7 +187,7 @@ def _hopeless(history: list[tuple[int, float]], budget: int) -> bool:
         for before, then in history[:-2]
         if np.isfinite(then)
     ]
-    return bool(np.log(now) > max(rates, default=0.0) * np.log(max(budget / after, 1.0)))
+    return bool(np.log(now) > max(rates, default=0.0) * np.log(max(HOPE * budget / after, 1.0)))
 
 
 def _estimate(total: Any, error: Any, spent: int, converged: bool) -> Estimate:

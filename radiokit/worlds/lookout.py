@@ -46,6 +46,10 @@ NARROW = 0.3
 BROAD = 0.6
 """Lobe's angular radius over the light's size above which no peak is looked for."""
 
+SLIVER, NEARLY = 0.05, 0.01
+"""Share of the light on the other side of the horizon below which that sliver's tip is searched for, and the
+height from which on, over the light's size, one may have been missed."""
+
 ROUNDING = 1e-14  # of the heights of a light that ends at the horizon
 _SAME = 1e-9
 _ROOT = 0.75
@@ -90,7 +94,7 @@ def look(
     product: Callable[[FloatArray], FloatArray] | None = None,
     *,
     width: float | None = None,
-    towards: FloatArray | Sequence[FloatArray] = (),
+    towards: Sequence[FloatArray] = (),
 ) -> Lookout:
     """Look at the square from which a light samples its directions.
 
@@ -118,24 +122,47 @@ def look(
     if length > 0:
         chord = np.sqrt(np.max(np.sum((directions - middle / length) ** 2, axis=1)))
         size = 2 * float(np.arcsin(min(chord / 2, 1.0)))
-    plain = Lookout(_axes(shape, None), (), kinks, size, 0)
-    if product is None or (width is not None and width > BROAD * size):
-        return plain
-    values = _positive(product(directions[:count]))
-    seeds, spent = [points[int(np.argmax(values))]], count
-    for direction in towards:
-        away = np.sum((directions[: count + 4 * EDGE] - direction) ** 2, axis=1)
-        seeds.append(points[int(np.argmin(away))])
+    spent = 0
+    probes: list[tuple[_At, FloatArray, FloatArray, Sequence[FloatArray], float | None]] = []
 
-    def at(u: FloatArray) -> tuple[FloatArray, FloatArray]:
-        nonlocal spent
-        spent += len(u)
-        seen, _ = light.sample(u, receiver.origin)
-        return seen, _positive(product(seen))
+    def sees(value: Callable[[FloatArray], FloatArray]) -> _At:
+        def at(u: FloatArray) -> tuple[FloatArray, FloatArray]:
+            seen, _ = light.sample(u, receiver.origin)
+            return seen, value(seen)
 
-    peaks, values = _close_in(at, _axes(shape, None), np.array(seeds), towards, width or HAIR)
-    axes = _axes(shape, peaks[int(np.argmax(values))])
-    foci = _foci(at, axes, peaks, values, towards, width)
+        return at
+
+    if product is not None and (width is None or width <= BROAD * size):
+
+        def size_of(w: FloatArray) -> FloatArray:
+            nonlocal spent
+            spent += len(w)
+            return _positive(product(w))
+
+        seeds = [points[int(np.argmax(size_of(directions[:count])))]]
+        for direction in towards:
+            away = np.sum((directions[: count + 4 * EDGE] - direction) ** 2, axis=1)
+            seeds.append(points[int(np.argmin(away))])
+        at = sees(size_of)
+        peaks, values = _close_in(at, _axes(shape, None), np.array(seeds), towards, width or HAIR)
+        probes.append((at, peaks, values, towards, width))
+    side = -1.0 if np.median(heights) > 0 else 1.0
+    if np.mean(side * heights > ROUNDING) < SLIVER and np.max(side * heights) > -NEARLY * size:
+        seed = points[[int(np.argmax(side * heights))]]
+        tip, _ = _close_in(
+            sees(lambda w: side * (w @ receiver.axis) + 2.0), _axes(shape, None), seed, (), HAIR
+        )
+        at = sees(lambda w: np.maximum(side * (w @ receiver.axis), 0.0))
+        _, value = at(tip)
+        kinks = kinks or bool(value[0] > ROUNDING)
+        probes.append((at, tip, value, (), None))
+    best = probes[0][1][int(np.argmax(probes[0][2]))] if probes else None
+    axes = _axes(shape, best)
+    foci = tuple(
+        focus
+        for at, peaks, values, expected, lobe in probes
+        for focus in _foci(at, axes, peaks, values, expected, lobe)
+    )
     return Lookout(axes, foci, kinks, size, spent)
 
 
@@ -167,7 +194,7 @@ def _close_in(
     at: _At,
     axes: tuple[Axis, Axis],
     seeds: FloatArray,
-    towards: FloatArray | Sequence[FloatArray],
+    towards: Sequence[FloatArray],
     width: float,
 ) -> tuple[FloatArray, FloatArray]:
     """Return where the product is largest near the first seed, and the places nearest to given directions."""
@@ -202,7 +229,7 @@ def _foci(
     axes: tuple[Axis, Axis],
     peaks: FloatArray,
     values: FloatArray,
-    towards: FloatArray | Sequence[FloatArray],
+    towards: Sequence[FloatArray],
     width: float | None,
 ) -> tuple[Focus, ...]:
     """Return the peaks that are narrow, by where the product falls to half on the way out.

@@ -239,7 +239,8 @@ def monte_carlo(
             foretold=by_material,
             method=f"qmc, {sampler.strategy}",
         )
-        return _doubted(found if term.shape or not sampler.edged else _scalar(found), sampler, hits)
+        found = found if term.shape or not sampler.edged else _scalar(found)
+        return _doubted(found, sampler, hits, by_material)
     draw = partial(_draw, sampler)
     found = mean(
         draw,
@@ -253,13 +254,13 @@ def monte_carlo(
         foretold=np.maximum(by_material, by_light),
         edge=sampler.edged and sampler.strategy == "mc-bsdf",
     )
-    return _doubted(found, sampler, hits)
+    return _doubted(found, sampler, hits, by_material)
 
 
-def _doubted(found: Estimate, sampler: Sampler, hits: float) -> Estimate:
+def _doubted(found: Estimate, sampler: Sampler, hits: float, variance: Any) -> Estimate:
     """Return an estimate as one that has not converged, if it rests on hits that hardly ever occur."""
     expected = hits * found.evaluations
-    if sampler.strategy != "mc-bsdf" or expected >= RARE:
+    if sampler.strategy != "mc-bsdf" or expected >= RARE or not np.any(variance):
         return found
     note = f"samples of the material hit the light about {expected:.2g} times"
     return replace(found, converged=False, note="; ".join(filter(None, (note, found.note))))
