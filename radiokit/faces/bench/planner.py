@@ -35,6 +35,9 @@ LONG_ENOUGH, WARM = 4e-3, 3
 AGAIN = 1.4
 """A ratio above this is measured again, thrice as often: the largest of many is mostly noise."""
 
+LABELS = 6
+"""Choices that are named in the picture, the worst."""
+
 RIVALS = 2
 """Forced methods that are timed in turn with ``auto``, of those that a glimpse found to be fastest."""
 
@@ -190,22 +193,31 @@ def draw(found: Sequence[Choice], path: Path) -> Path:
     for kind, colour in kinds.items():
         places = [k for k, each in enumerate(order) if _kind(each) == kind]
         ratios = [order[k].ratio for k in places]
+        if not places:
+            continue
         axes.plot(places, ratios, "o", color=colour, markersize=4, label=f"{kind} ({len(places)})")
     axes.axhline(LIMIT, color="tab:red", linewidth=1)
     axes.axhline(1.0, color="black", linewidth=0.5)
-    for k, each in list(enumerate(order))[-8:]:
-        words = f"{each.case}, {each.rtol:g}: {each.method.split(',')[0]}, or {each.best}"
+    for k, each in list(enumerate(order))[-LABELS:]:
+        taken = (
+            each.method.split(" + ")[0].split(",")[0].replace("Gauss-Legendre over the light", "quadrature")
+        )
+        words = f"{each.case}, {each.rtol:g}: {taken}, against {each.best}"
         axes.annotate(
             words,
             (k, each.ratio),
-            xytext=(0.72, 0.5 + 0.055 * (k - len(order) + 8)),
+            xytext=(0.8, 0.04 + 0.055 * (k - len(order) + LABELS)),
             textcoords="axes fraction",
             ha="right",
             fontsize=8,
-            arrowprops={"arrowstyle": "-", "color": "0.7", "linewidth": 0.5},
+            arrowprops={"arrowstyle": "-", "color": "0.7", "linewidth": 0.5, "relpos": (1.0, 0.5)},
         )
     axes.set_yscale("log")
     axes.set_ylim(top=max(2 * LIMIT, 1.2 * order[-1].ratio))
+    axes.set_yticks([0.125, 0.25, 0.5, 1.0, 2.0, 4.0], labels=["1/8", "1/4", "1/2", "1", "2", "4"])
+    axes.minorticks_off()
+    low = min(0.4, 0.9 * order[0].ratio)
+    axes.set_ylim(bottom=low)
     axes.set_xlabel("cases of shading at two tolerances, sorted")
     axes.set_ylabel("time of auto / time of the best forced method")
     axes.legend(loc="upper left")
