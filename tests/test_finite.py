@@ -193,6 +193,32 @@ def test_a_planted_lobe_that_is_too_narrow_is_not_passed_over(seed):
     assert abs(seen.value - 1 - math.pi) < 1e-3 * seen.value
 
 
+def test_a_whole_lobe_within_a_light_is_followed_in_slope_coordinates():
+    """At grazing incidence, and for a material with a kink through its lobe; not where tails reach out."""
+    low = np.array([math.sin(1.4), 0.0, math.cos(1.4)])
+    grazing = Sphere(center=tuple(2 * low), radius=0.3, radiance=2.0)
+    wo, mirror = setting(0.3, "centre")
+    kinked = AshikhminShirley(exponent_u=1000, exponent_v=1000, reflectance=0.0)
+    cases = [
+        (Phong(exponent=1e5), grazing, low * [-1, -1, 1], 1e-6),
+        (kinked, make("disk", 0.3), wo, 1e-3),
+    ]
+    for f, light, out, rtol in cases:
+        found = shade(f, light, out, method="quadrature", rtol=rtol)
+        (row,) = explain(f, light, out, rtol=rtol).rows
+        assert found.converged
+        assert "slope" in found.method
+        assert "lies within the light" in row.why
+        square = shade(f, light, out, method="quadrature", rtol=rtol, evaluations=2_000_000)
+        assert "over the light" in square.method
+        assert square.converged
+        assert abs(found.value - square.value) <= found.error + square.error
+    tails = shade(GGX(alpha=0.05), grazing, low * [-1, -1, 1], method="quadrature", rtol=1e-6)
+    assert "over the light" in tails.method
+    exact = truth("disk", 0.3, kinked, wo, mirror, 0.06, n=12)
+    assert abs(found.value - exact) <= found.error + 1e-6 * exact
+
+
 def test_the_plan_says_which_is_narrower():
     wo, _ = setting(0.5, "centre")
     for f, words in ((GGX(alpha=0.01), "lobe is narrower"), (GGX(alpha=0.9), "light is narrower")):

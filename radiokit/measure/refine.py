@@ -180,8 +180,8 @@ def _hopeless(history: list[tuple[int, float]], budget: int) -> bool:
     if len(history) <= ROUNDS:
         return False
     after, now = history[-1]
-    if not np.isfinite(now) or now <= 1:
-        return False
+    if not np.isfinite(now) or now <= 1 or now >= history[-2][1]:
+        return False  # it may rise where a round has found what the ones before had not seen
     rates = [
         np.log(max(then / now, 1.0)) / np.log(after / before)
         for before, then in history[:-2]

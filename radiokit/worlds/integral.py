@@ -11,16 +11,21 @@ import numpy as np
 import numpy.typing as npt
 
 from radiokit.contracts.emitter import Emitter
+from radiokit.emitters.disk import Disk
+from radiokit.emitters.rectangle import Rectangle
+from radiokit.emitters.sphere import Sphere
+from radiokit.emitters.triangle import Triangle
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.lattice import kronecker
 from radiokit.measure.lune import lune
 from radiokit.measure.quadrature import hemisphere
+from radiokit.measure.slope import slope_rule
 from radiokit.worlds.budget import Budget
 from radiokit.worlds.finite import MOST, over_light
 from radiokit.worlds.sampling import ZENITH, Sampler
-from radiokit.worlds.terms import Term
+from radiokit.worlds.terms import Term, times
 
-__all__ = ["GUARD", "expected_peaks", "integrate", "lobe_angle", "patience", "product_of"]
+__all__ = ["GUARD", "expected_peaks", "integrate", "lobe_angle", "patience", "product_of", "whole_lobe"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -30,6 +35,18 @@ its lobe and for one that is not."""
 
 DOME_MOST = 4_000_000
 """Evaluations under a dome when no budget is given."""
+
+LONG = 0.35
+"""cosθo below which a lobe is long on the sphere."""
+
+CONVEX = (Disk, Rectangle, Sphere, Triangle)
+"""Lights of constant radiance without holes; a disk with an exponent is found not to be constant."""
+
+PROBE_RULE = (40, 28)
+"""Radii and azimuths at which it is looked at whether a lobe lies within the light."""
+
+BESIDE, MARGIN = 20.0, 3.0
+"""What lies beside the light may be that part of the tolerance; so many times it is added to the error."""
 
 _PROBE = 256  # evaluations that tell how long one takes
 _CAREFUL = 0.7  # share of the time that is planned for
@@ -91,6 +108,44 @@ def product_of(term: Term) -> Callable[[Emitter], Callable[[FloatArray], Any]]:
     return product
 
 
+def whole_lobe(term: Term, rtol: float) -> tuple[Any, Any] | None:
+    """Return a light's radiance, and what of ∫ f cosθ dω lies beside it, if that hardly counts.
+
+    Such a lobe under a light of constant radiance is integrated in slope coordinates, as under a sky. That is
+    cheaper than to follow it in the light's square where it is long, at grazing incidence, and where the
+    material has kinks, of which slope coordinates know the course. Only a light that is known to be convex,
+    and so has no holes or notches that a few nodes might not see, is asked: None for all others.
+    """
+    width = term.f.lobe_width()
+    if width is None or type(term.light) not in CONVEX or (term.f.smooth and term.wo[2] > LONG):
+        return None
+    wi, weight = slope_rule(term.wo, width, PROBE_RULE)
+    radiance = np.asarray(term.light.radiance_from(term.receiver.to_world(wi), term.receiver.origin))
+    largest = radiance.max(axis=0)
+    lit = radiance.reshape(len(wi), -1).max(axis=1) > 0
+    if not np.any(lit) or not np.all(radiance[lit] == largest):
+        return None
+    mass = times(term.f.evaluate(wi, np.broadcast_to(term.wo, wi.shape)), wi[:, 2] * weight)
+    beside = mass[~lit].sum(axis=0)
+    hardly = np.all(BESIDE * beside <= rtol * mass.sum(axis=0))
+    return (largest, beside) if hardly else None
+
+
+def _in_slope(term: Term, rtol: float, radiance: Any, beside: Any) -> Estimate:
+    """Integrate over a lobe that lies within the light, as if the light filled the hemisphere."""
+
+    def under_a_sky(wi: FloatArray) -> FloatArray:
+        return times(term.f.evaluate(wi, np.broadcast_to(term.wo, wi.shape)), np.maximum(wi[:, 2], 0.0))
+
+    found = hemisphere(
+        under_a_sky, wo=term.wo, width=term.f.lobe_width(), rtol=rtol / 2, smooth=term.f.smooth
+    )
+    found = replace(found, error=found.error + MARGIN * beside).scaled(radiance)
+    evaluations = found.evaluations + 2 * PROBE_RULE[0] * PROBE_RULE[1]
+    converged = bool(np.all(found.error <= rtol * np.abs(found.value)))
+    return replace(found, evaluations=evaluations, converged=converged)
+
+
 def _affordable(term: Term, budget: Budget) -> int:
     """Return the evaluations that a budget allows, with the time that one takes measured."""
     most = DOME_MOST if budget.evaluations is None else max(budget.evaluations, _LEAST)
@@ -112,7 +167,11 @@ def _over_square(term: Term, rtol: float, budget: Budget, refinement: int) -> Es
     both the light and the material sees a lobe that is elsewhere.
     """
     start = time.perf_counter()
-
+    within = None if budget.bounded else whole_lobe(term, rtol)
+    if within is not None:
+        found = _in_slope(term, rtol, *within)
+        if found.converged:
+            return replace(found, seconds=time.perf_counter() - start)
     count = GUARD if getattr(term.f, "has_sampler", True) else BLIND
     most = MOST
     if budget.evaluations is not None:

@@ -15,7 +15,7 @@ from radiokit.facts.jsonable import jsonable
 from radiokit.measure import lowdiscrepancy
 from radiokit.measure.lattice import kronecker
 from radiokit.worlds.budget import Budget
-from radiokit.worlds.integral import GUARD, expected_peaks, lobe_angle, product_of
+from radiokit.worlds.integral import GUARD, expected_peaks, lobe_angle, product_of, whole_lobe
 from radiokit.worlds.lookout import Lookout, look
 from radiokit.worlds.sampling import BLOCK, ZENITH, Sampler, best_sampling
 from radiokit.worlds.terms import DELTA_LIGHT, DELTA_LOBES, MAX_SAMPLES, Term
@@ -94,6 +94,13 @@ class Pilot:
     """A term, and what a quadrature sees in the pieces of its light."""
 
     term: Term
+    rtol: float
+    bounded: bool
+
+    @cached_property
+    def within(self) -> bool:
+        """Whether the lobe lies within a finite light and is integrated in slope coordinates."""
+        return not self.bounded and whole_lobe(self.term, self.rtol) is not None
 
     @cached_property
     def lookouts(self) -> list[Lookout]:
@@ -185,26 +192,26 @@ def _ratio(error: Any, value: Any) -> float:
 
 def _quadrature(pilot: Pilot, rtol: float, budget: Budget, seconds: float | None) -> Cost:
     """Return what a quadrature takes, by the lobe's width, the light's size, and what bends in between."""
-    term = pilot.term
-    dome = term.light.dome(term.receiver.origin)
-    if dome is not None:
-        needed = (
-            1.0
-            if any(float(zenith @ term.receiver.axis) < -ZENITH for zenith in dome)
-            else float(DOME if term.f.smooth else 2 * DOME) * (1 if rtol >= 1e-7 else 4)
-        )
-        pieces = 1
-    else:
-        seen = pilot.lookouts
-        pieces = max(len(seen), 1)
-        needed = (
-            1.0 if not seen else 2.0 * GUARD + sum(_in_square(each, term.f.smooth, rtol) for each in seen)
-        )
+    needed, pieces = _rules(pilot, rtol)
     limits = [math.inf] if budget.evaluations is None else [float(budget.evaluations)]
     limits += [] if seconds is None else [seconds / PER_EVALUATION]
     error = rtol if needed <= min(limits) else min(1.0, rtol * (needed / max(min(limits), 1.0)) ** 2)
     taken = pieces * PER_CALL + needed * PER_EVALUATION
     return Cost("quadrature", needed, taken, error, min(needed, *limits))
+
+
+def _rules(pilot: Pilot, rtol: float) -> tuple[float, int]:
+    """Return the evaluations that the tolerance needs, and over how many pieces."""
+    term = pilot.term
+    dome = term.light.dome(term.receiver.origin)
+    if dome is not None and any(float(zenith @ term.receiver.axis) < -ZENITH for zenith in dome):
+        return 1.0, 1
+    if dome is not None or pilot.within:
+        return float(DOME if term.f.smooth else 2 * DOME) * (1 if rtol >= 1e-7 else 4), 1
+    seen = pilot.lookouts
+    if not seen:
+        return 1.0, 1
+    return 2.0 * GUARD + sum(_in_square(each, term.f.smooth, rtol) for each in seen), len(seen)
 
 
 def _in_square(seen: Lookout, smooth: bool, rtol: float) -> float:

@@ -195,7 +195,7 @@ def explained(
 ) -> Row:
     """Return the row of a term: the method, why it was chosen, what it costs, and what others would."""
     others = tuple(option for option in _options(term) if option != chosen)
-    pilot = Pilot(term)
+    pilot = Pilot(term, rtol, budget.bounded or seconds is not None)
     cost, *costs = (foretell(pilot, each, rtol, samples, budget, seconds) for each in (chosen, *others))
     cost = cost.limited
     return Row(
@@ -259,6 +259,8 @@ def _why_quadrature(pilot: Pilot) -> str:
         if dome:
             return "the sky's and the surface's horizons bound a lune, in which the product is smooth"
         return "the light fills the hemisphere, where the product is smooth in slope coordinates"
+    if pilot.within:
+        return "the lobe lies within the light, whose radiance is constant: slope coordinates follow it"
     seen = pilot.lookouts
     if any(each.kinks for each in seen):
         return (
