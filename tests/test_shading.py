@@ -569,6 +569,9 @@ def test_what_a_budget_does_not_reach_is_said(seed):
     ample = shade(GGX(alpha=0.3), [BROAD], at(20), rtol=1e-6, evaluations=10**6)
     assert ample.converged
     assert ample.value == shade(GGX(alpha=0.3), [BROAD], at(20), rtol=1e-6).value
+    cut = shade(Lambert(), [BROAD], (0, 0, 1), method="mis", samples=10_000, evaluations=10_000, rng=seed)
+    assert not cut.converged
+    assert "the budget allowed for 5000 of 10000 samples" in cut.note
     exact = shade(Lambert(), [Constant()], (0, 0, 1), evaluations=1)
     assert exact.method == "closed form"
 

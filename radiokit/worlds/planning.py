@@ -20,7 +20,17 @@ from radiokit.worlds.sampling import best_sampling
 from radiokit.worlds.scene import Receiver, check_emitter
 from radiokit.worlds.terms import DELTA_LIGHT, DELTA_LOBES, SMOOTH, Term
 
-__all__ = ["METHODS", "Plan", "Row", "applies", "check_direction", "choose", "explained", "find_terms"]
+__all__ = [
+    "METHODS",
+    "Plan",
+    "Row",
+    "applies",
+    "check_direction",
+    "choose",
+    "explained",
+    "find_terms",
+    "integrates",
+]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -177,6 +187,11 @@ def choose(term: Term, method: str, budget: Budget) -> str:
         method=method,
         usable=options,
     )
+
+
+def integrates(term: Term, method: str) -> bool:
+    """Return whether something is left to integrate, by whatever method: neither a sum nor a closed form."""
+    return choose(term, method, Budget()) not in ("sum", "closed form")
 
 
 def applies(method: str, *scene: Any, normal: npt.ArrayLike, position: npt.ArrayLike) -> bool:

@@ -254,7 +254,11 @@ def monte_carlo(
         foretold=np.maximum(by_material, by_light),
         edge=sampler.edged and sampler.strategy == "mc-bsdf",
     )
-    return _doubted(found, sampler, hits, by_material)
+    found = _doubted(found, sampler, hits, by_material)
+    if samples is not None and found.evaluations < samples and found.converged:
+        note = f"the budget allowed for {found.evaluations} of {samples} samples"
+        found = replace(found, converged=False, note="; ".join(filter(None, (note, found.note))))
+    return found
 
 
 def _doubted(found: Estimate, sampler: Sampler, hits: float, variance: Any) -> Estimate:

@@ -15,7 +15,7 @@ from radiokit.facts.estimate import Estimate
 from radiokit.measure.montecarlo import seed_from
 from radiokit.worlds.budget import Budget, Purse
 from radiokit.worlds.integral import integrate, patience
-from radiokit.worlds.planning import Plan, choose, explained, find_terms
+from radiokit.worlds.planning import Plan, choose, explained, find_terms, integrates
 from radiokit.worlds.sampling import monte_carlo, sampling_is_better
 from radiokit.worlds.terms import SMOOTH, Term
 
@@ -112,14 +112,15 @@ def shade(
     1.0
     """
     _, terms = find_terms(f, emitters, wo, normal=normal, position=position, method=method, rtol=rtol)
-    purse = Purse(seconds, evaluations, sum(not term.exact for term in terms))
+    purse = Purse(seconds, evaluations, sum(integrates(term, method) for term in terms))
     generator = np.random.default_rng(seed_from(rng))
     total: Estimate | None = None
     for term in terms:
-        budget = Budget() if term.exact else purse.share()
+        shared = integrates(term, method)
+        budget = purse.share() if shared else Budget()
         chosen = choose(term, method, budget)
         found = _compute(term, chosen, method, rtol, samples, generator, executor, budget)
-        if not term.exact:
+        if shared:
             purse.pay(found.evaluations * (2 if "mis" in found.method else 1))
         total = found if total is None else total + found
     if total is None:
@@ -201,7 +202,7 @@ def explain(
         also possible: nothing
     """
     subject, terms = find_terms(f, emitters, wo, normal=normal, position=position, method=method, rtol=rtol)
-    integrals = sum(not term.exact for term in terms)
+    integrals = sum(integrates(term, method) for term in terms)
     purse = Purse(seconds, evaluations, integrals)
     share, time_share = purse.share(), None if seconds is None else seconds / max(integrals, 1)
     rows = [explained(term, choose(term, method, share), rtol, samples, share, time_share) for term in terms]

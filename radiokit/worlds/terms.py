@@ -65,11 +65,6 @@ class Term:
         return self.part == DELTA_LIGHT or not self.only_delta
 
     @cached_property
-    def exact(self) -> bool:
-        """Whether there is nothing to integrate: a delta light or lobe, or a viewer who sees nothing."""
-        return self.part != SMOOTH or bool(self.wo[2] <= 0)
-
-    @cached_property
     def shape(self) -> tuple[int, ...]:
         """The shape of one value: () for one wavelength, (K,) for K of them."""
         up = np.array([[0.0, 0.0, 1.0]])
