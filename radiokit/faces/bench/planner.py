@@ -33,7 +33,8 @@ LONG_ENOUGH, WARM = 4e-3, 3
 """Seconds that are timed at a time, and calls whose quickest tells how many calls that takes."""
 
 AGAIN = 1.4
-"""A ratio above this is measured again, thrice as often: the largest of many is mostly noise."""
+"""A ratio above this is measured again, thrice as often and by the shortest times, which a busy machine
+disturbs least: the largest of many ratios is mostly noise."""
 
 LABELS = 6
 """Choices that are named in the picture, the worst."""
@@ -56,7 +57,7 @@ class Choice:
     best: str
     best_seconds: float
     ratio: float
-    """The median over the repetitions, in each of which both are timed next to each other."""
+    """How many times slower ``auto`` is."""
     exact: bool
     """Whether a sum or a closed form exists, and ``auto`` took one."""
     missed: bool
@@ -85,13 +86,15 @@ def measure(
     found = []
     for done, (each, rtol) in enumerate(todo):
         choice = _choice(each, rtol, repeats, seed)
-        found.append(choice if choice.ratio < AGAIN else _choice(each, rtol, 3 * repeats, seed))
+        found.append(choice if choice.ratio < AGAIN else _choice(each, rtol, 3 * repeats, seed, np.min))
         if progress is not None:
             progress(done + 1, len(todo))
     return found
 
 
-def _choice(problem: Case, rtol: float, repeats: int, seed: int) -> Choice:
+def _choice(
+    problem: Case, rtol: float, repeats: int, seed: int, typical: Callable[..., Any] = np.median
+) -> Choice:
     scene: Any = problem.scene
 
     def call(method: str, seconds: float | None = None) -> Callable[[int], Estimate]:
@@ -119,7 +122,7 @@ def _choice(problem: Case, rtol: float, repeats: int, seed: int) -> Choice:
         [_needed(method, found, seconds, rtol) for found, seconds in timing]
         for method, timing in zip(("auto", *rivals), timings, strict=True)
     ]
-    middle = [float(np.median(each)) for each in times]
+    middle = [float(typical(each)) for each in times]
     best = int(np.argmin(middle[1:]))
     taken = timings[0][-1][0].method
     closed = all(part in ("sum", "closed form") or "integral along" in part for part in taken.split(" + "))
@@ -130,7 +133,7 @@ def _choice(problem: Case, rtol: float, repeats: int, seed: int) -> Choice:
         seconds=middle[0],
         best=rivals[best],
         best_seconds=middle[1 + best],
-        ratio=float(np.median(np.divide(times[0], times[1 + best]))),
+        ratio=middle[0] / middle[1 + best],
         exact=closed,
         missed=not closed and any(method in ("sum", "closed form") for method in forced),
     )
