@@ -173,10 +173,9 @@ def test_bounds_hold_for_other_lobes(kind, f, width):
     for offset in OFFSETS:
         wo, mirror = setting(0.5, offset)
         exact = truth(kind, 0.5, f, wo, mirror, width, n=10)
-        for rtol in (1e-3, 1e-5):
-            found = shade(f, make(kind, 0.5), wo, method="quadrature", rtol=rtol)
-            assert found.converged, offset
-            assert abs(found.value - exact) <= found.error + 1e-8 * exact, offset
+        found = shade(f, make(kind, 0.5), wo, method="quadrature", rtol=1e-5)
+        assert found.converged, offset
+        assert abs(found.value - exact) <= found.error + 1e-8 * exact, offset
 
 
 def test_a_planted_lobe_that_is_too_narrow_is_not_passed_over(seed):
@@ -255,7 +254,7 @@ def test_an_environment_of_many_cells_gives_an_honest_bound():
 
 def test_bounds_hold_where_the_horizon_cuts_round_lights(rng):
     receiver = Receiver()
-    for _ in range(40):
+    for _ in range(20):
         half_angle = rng.choice([0.05, 0.3, 0.8, 1.2])
         elevation, turn = rng.uniform(-0.9, 0.9) * half_angle, rng.uniform(0, 2 * np.pi)
         to = np.array([np.cos(elevation) * np.cos(turn), np.cos(elevation) * np.sin(turn), np.sin(elevation)])
