@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -25,13 +25,12 @@ from radiokit.measure.converge import (
     converge,
 )
 from radiokit.measure.curves import CURVES, Curve
-from radiokit.measure.lattice import kronecker
-from radiokit.measure.polar import POLAR_SIZES, polar_rule
-from radiokit.measure.ridge import Ridge, find_ridge
+from radiokit.measure.polar import POLAR_SIZES, lit_rule, polar_rule
+from radiokit.measure.scan import DOUBT, SCAN, look_over, missed
 from radiokit.measure.slope import Lobe, find_lobe, mirrored, slope_map, slope_rule, turned
 from radiokit.measure.split import kinked, split_rule
 
-__all__ = ["box", "hemisphere", "missed"]
+__all__ = ["box", "hemisphere"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -83,9 +82,6 @@ WIDTHS = (1.35, 0.8, 1.2, 1.0, 0.9, 1.1, 0.85, 1.0, 0.9, 1.1)
 SMOOTH_WIDTHS = (1.1, 0.9, 1.0, 1.05, 0.95, 1.1, 0.9, 1.0, 0.95, 1.05)
 """The same where rules are known to converge: less off, since they are best near the width itself."""
 
-SCAN = 4096
-"""Points of the scan that every unknown integrand gets."""
-
 STEEPNESS = 0.01 * float(np.finfo(float).eps)
 """Rounding, relative to the sum of absolute terms, times the lobe's width and cosθo; at most 0.007 eps."""
 
@@ -107,9 +103,6 @@ CERTAIN = 1e-11
 LOOK = 512
 """Points at which the shape of a smooth lobe is looked at, where it may be long and narrow."""
 
-DOUBT = 2.0
-"""Standard deviations between a rule and the scan that raise doubt; evenly spread points err by far less."""
-
 
 def hemisphere(
     integrand: Integrand,
@@ -128,7 +121,9 @@ def hemisphere(
     adaptive cubature takes over in the same coordinates, twice and with different panels: the two runs
     must confirm each other. An unknown integrand is also scanned for mass between the nodes.
 
-    The bound holds for integrands that are smooth up to the horizon, or have a kink. Where jumps run
+    The bound holds for integrands that are smooth up to the horizon, or have a kink; one that is a mere
+    1e-4 rad from where a rough diffuse surface bends may be missed, which costs the square of that. Where
+    jumps run
     through the hemisphere no finite number of evaluations can bound anything: there the error is an
     estimate, which about one integrand in a hundred exceeds (``tests/test_quadrature.py``).
 
@@ -191,11 +186,11 @@ def hemisphere(
                 if curves:  # a lobe around wo that is too wide to be seen as one
                     straight = integrand
                     integrand = lambda w: straight(turned(w))  # noqa: E731
-            scan = _scan(integrand, wo, core)
+            scan = look_over(integrand, wo, core)
             spent += SCAN + looked
             ridge = None if symmetric else scan.ridge
         elif not symmetric:
-            ridge = _scan(integrand, wo, core, LOOK).ridge
+            ridge = look_over(integrand, wo, core, LOOK).ridge
             spent += LOOK
     steep = wo[2] > STEEP and ridge is not None and ridge.ratio < THIN
     cut = bool(curves) or steep
@@ -224,6 +219,12 @@ def hemisphere(
                 return
             yield apply_rule(integrand, wi, weight)
 
+    def lit() -> Iterator[RuleSum]:
+        for n in POLAR_SIZES:
+            wi, weight, seen = lit_rule(integrand, wo, n, symmetric=symmetric)
+            found = apply_rule(integrand, wi, weight)
+            yield replace(found, points=found.points + seen)
+
     # A direction is known to an eps; a narrow lobe magnifies that, and a grazing one more.
     rounding = ROUNDING + STEEPNESS / (core * float(wo[2]))
     memory = FORGETFUL if plain else MEMORY
@@ -238,6 +239,9 @@ def hemisphere(
             polar = compare(sums, min(rtol, CERTAIN), 0.0)
             spent += found.evaluations
             found, method = polar, "polar quadrature"
+        if not found.converged and scan is not None and scan.dark:
+            found = compare(lit(), min(rtol, CERTAIN), 0.0)
+            spent += found.evaluations
         if not found.converged:
             spent += found.evaluations
             found, method = compare(rules(), rtol, atol), "slope-space quadrature"
@@ -278,38 +282,12 @@ def hemisphere(
     )
 
 
-@dataclass(frozen=True)
-class Scan:
-    """A rough integral with its uncertainty, and the ridge of the lobe that was seen."""
-
-    mean: Any
-    spread: Any
-    ridge: Ridge | None
-
-
-def _scan(integrand: Integrand, wo: FloatArray, width: float, count: int = SCAN) -> Scan:
-    """Integrate roughly with points spread evenly, which see between the nodes of the rules."""
-    x, s = kronecker(count, 2).T
-    wi, weight, _ = slope_map(wo, width, x, s)
-    far = np.arange(count) % 2 == 0
-    wi[far] = mirrored(wi[far], wo)
-    terms = (np.asarray(integrand(wi), dtype=float).T * weight).T
-    ridge = find_ridge(wo, s, far, np.abs(terms.reshape(count, -1)).sum(axis=1))
-    return Scan(terms.mean(axis=0), terms.std(axis=0) / np.sqrt(count), ridge)
-
-
 def _confirmed(integrand: Integrand, wo: FloatArray, lobe: Lobe) -> Lobe:
     """Return the lobe around ``wo`` or that around its mirror direction, whichever is seen more evenly."""
     other = find_lobe(integrand, wo, around=(False,))
-    there = _scan(lambda w: integrand(turned(w)), wo, lobe.core)
-    here = _scan(integrand, wo, other.core)
+    there = look_over(lambda w: integrand(turned(w)), wo, lobe.core)
+    here = look_over(integrand, wo, other.core)
     least = np.abs(there.mean) - DOUBT * there.spread
     blind = np.any(np.abs(here.mean) + DOUBT * here.spread < least)  # it looks even where nothing is seen
     best = other if not blind and np.max(here.spread) < np.max(there.spread) else lobe
     return replace(best, evaluations=other.evaluations + 2 * SCAN)
-
-
-def missed(found: Estimate, mean: Any, spread: Any) -> float:
-    """Return by how much an integral and a scan differ beyond what either allows; 0 where they agree."""
-    difference = np.abs(found.value - mean)
-    return float(np.max(np.where(difference > DOUBT * spread + found.error, difference, 0.0)))
