@@ -9,8 +9,9 @@ import pytest
 from radiokit.facts.directions import spherical_to_cartesian
 from radiokit.facts.errors import NonFiniteError, ParameterError
 from radiokit.measure.converge import converge
+from radiokit.measure.gauss import gauss_legendre
 from radiokit.measure.quadrature import box, hemisphere
-from radiokit.measure.slope import find_lobe, gauss_legendre, slope_inverse, slope_map, slope_rule
+from radiokit.measure.slope import find_lobe, slope_inverse, slope_map, slope_rule
 
 ANGLES_DEG = (0.0, 30.0, 60.0, 80.0, 89.0, 89.9, 89.99)
 

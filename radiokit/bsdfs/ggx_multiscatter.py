@@ -20,8 +20,9 @@ from radiokit.contracts.scalar import Kernels, ScalarBSDF
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.source import Source
 from radiokit.measure.elementary import log1p
+from radiokit.measure.gauss import gauss_legendre
 from radiokit.measure.kernels import Kernel, bind, kernel, select
-from radiokit.measure.slope import gauss_legendre, slope_rule
+from radiokit.measure.slope import slope_rule
 from radiokit.measure.twin import Twin
 from radiokit.measure.vectors import from_disk
 from radiokit.physics import fresnel

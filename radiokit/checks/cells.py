@@ -12,9 +12,10 @@ import numpy as np
 from radiokit.checks.parts import Part, flipped
 from radiokit.contracts.bsdf import BSDF, FloatArray
 from radiokit.facts.estimate import Estimate
+from radiokit.measure.gauss import gauss_legendre
 from radiokit.measure.quadrature import hemisphere
 from radiokit.measure.refraction import refracted, refracted_inverse, refracted_map
-from radiokit.measure.slope import find_lobe, gauss_legendre, mirrored, slope_inverse, slope_map, turned
+from radiokit.measure.slope import find_lobe, mirrored, slope_inverse, slope_map, turned
 from radiokit.measure.transmission import THIN, find_width, transmission
 
 __all__ = ["Cells", "cells_of"]

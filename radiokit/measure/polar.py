@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.measure.slope import gauss_legendre
+from radiokit.measure.gauss import eased, gauss_legendre
 
 __all__ = ["POLAR_SIZES", "lit_rule", "polar_rule"]
 
@@ -79,7 +79,7 @@ def lit_rule(
         seen = at_edge(look)
         (changes,) = np.nonzero(seen[1:] != seen[:-1])
         ends |= set(_halved(at_edge, look[changes], look[changes + 1], seen[changes]).tolist())
-    theta, w_theta = _pieces(tuple(sorted(ends)), *_eased(u, wu))
+    theta, w_theta = _pieces(tuple(sorted(ends)), *eased(u, wu))
     rows = []
     for low, high in pairwise(quarters):
         first, last = lit(theta, np.full_like(theta, low)), lit(theta, np.full_like(theta, high))
@@ -107,11 +107,6 @@ def _halved(
         same = lit(middle) == first
         low, high = np.where(same, middle, low), np.where(same, high, middle)
     return 0.5 * (low + high)
-
-
-def _eased(u: FloatArray, wu: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return a rule on [0, 1] for functions with half powers at its ends, from one for polynomials."""
-    return u * u * (3.0 - 2.0 * u), wu * 6.0 * u * (1.0 - u)
 
 
 def _polar_angle(wo: FloatArray) -> float:

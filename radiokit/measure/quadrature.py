@@ -113,6 +113,7 @@ def hemisphere(
     atol: float = 0.0,
     symmetric: bool = False,
     smooth: bool = False,
+    edges: tuple[Curve, ...] = (),
     max_evaluations: int = 4_000_000,
 ) -> Estimate:
     """Integrate over the upper hemisphere: ∫ g(ω) dω, with nodes around the mirror direction of ``wo``.
@@ -142,6 +143,8 @@ def hemisphere(
     smooth : bool
         Whether the integrand is known to have no kink or jump, so that rules that agree a little are
         believed, and no scan is made.
+    edges : tuple of Curve
+        Where the integrand is known to bend, or to go as a root; bends elsewhere are looked for.
     max_evaluations : int
         A budget. The estimate says ``converged=False`` when it did not suffice.
 
@@ -180,6 +183,7 @@ def hemisphere(
     if max_evaluations - spent > 2 * SCAN:
         if not smooth:
             curves, looked = kinked(integrand, wo, core)
+            curves += edges
             if not curves and core >= BROAD:
                 curves, more = kinked(lambda w: integrand(turned(w)), wo, core, CURVES[-1:])
                 looked += more
