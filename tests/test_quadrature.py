@@ -303,7 +303,7 @@ def test_light_that_ends_along_a_curve_takes_few_evaluations(theta_deg, turn):
     found = hemisphere(lambda w: tilted(w, theta, 0.4 + turn), wo=wo, rtol=1e-10)
     exact = np.pi * np.cos(theta / 2) ** 2
     assert found.converged
-    assert found.evaluations < 120_000
+    assert found.evaluations < 150_000  # of which most find where the light ends
     assert abs(found.value - exact) <= found.error <= 1e-10 * exact
 
 

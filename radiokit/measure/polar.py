@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from radiokit.measure.gauss import eased, gauss_legendre
 
-__all__ = ["POLAR_SIZES", "lit_rule", "polar_rule"]
+__all__ = ["POLAR_SIZES", "LitRules", "polar_rule"]
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
@@ -46,56 +46,60 @@ def polar_rule(wo: FloatArray, n: int, *, symmetric: bool = False) -> tuple[Floa
     return _directions(wo, theta[:, None], phi).reshape(-1, 3), weight.ravel()
 
 
-def lit_rule(
-    integrand: Callable[[FloatArray], Any], wo: FloatArray, n: int, *, symmetric: bool = False
-) -> tuple[FloatArray, FloatArray, int]:
-    """Return directions (N, 3) and weights (N,) for where an integrand is not 0, and the values that it took.
+class LitRules:
+    """Rules for where an integrand is not 0: as ``polar_rule``, ending where the light does.
 
-    As ``polar_rule``, with each quarter of a circle of equal θ ending where the light does, and θ cut where
-    that end comes to an edge of the quarter; from there it moves as a root does, which the nodes are eased
-    for. At most one end to a quarter is found: more of them only slow down the convergence.
+    Each quarter of a circle of equal θ ends where the light does, and θ is cut where that end comes to an
+    edge of the quarter; from there it moves as a root does, which the nodes are eased for. At most one end to
+    a quarter is found: more of them only slow down the convergence.
 
     >>> wo = np.array([0.6, 0.0, 0.8])
     >>> cut_off = lambda w: np.maximum(w[:, 2] - w[:, 0], 0.0)
-    >>> wi, weight, _ = lit_rule(cut_off, wo, 24)
+    >>> wi, weight = LitRules(cut_off, wo).rule(24)
     >>> round(float(weight @ cut_off(wi)), 13) == round(np.pi * (1 + 2**0.5) / 2, 13)  # a tilted half-space
     True
     """
-    spent = 0
 
-    def lit(theta: FloatArray, phi: FloatArray) -> BoolArray:
-        nonlocal spent
-        wi = _directions(wo, theta, phi)
-        spent += wi.size // 3
-        value = np.asarray(integrand(wi.reshape(-1, 3)))
-        return np.asarray((value.reshape(*wi.shape[:-1], -1) != 0).any(axis=-1))
+    def __init__(
+        self, integrand: Callable[[FloatArray], Any], wo: FloatArray, *, symmetric: bool = False
+    ) -> None:
+        self._integrand, self._wo, self._symmetric = integrand, wo, symmetric
+        self.evaluations = 0
+        """Values that were taken to find where the light ends."""
+        look = 0.5 * np.pi * (np.arange(_LOOK) + 0.5) / _LOOK
+        ends = {0.0, _polar_angle(wo), 0.5 * np.pi}
+        for edge in _quarters(symmetric):
+            at_edge = partial(self._at, edge)
+            seen = at_edge(look)
+            (changes,) = np.nonzero(seen[1:] != seen[:-1])
+            ends |= set(_halved(at_edge, look[changes], look[changes + 1], seen[changes]).tolist())
+        self._ends = tuple(sorted(ends))
 
-    u, wu = gauss_legendre(n)
-    look = 0.5 * np.pi * (np.arange(_LOOK) + 0.5) / _LOOK
-    ends = {0.0, _polar_angle(wo), 0.5 * np.pi}
-    quarters = _quarters(symmetric)
-    for edge in quarters:
-        at_edge = partial(_at, lit, edge)
-        seen = at_edge(look)
-        (changes,) = np.nonzero(seen[1:] != seen[:-1])
-        ends |= set(_halved(at_edge, look[changes], look[changes + 1], seen[changes]).tolist())
-    theta, w_theta = _pieces(tuple(sorted(ends)), *eased(u, wu))
-    rows = []
-    for low, high in pairwise(quarters):
-        first, last = lit(theta, np.full_like(theta, low)), lit(theta, np.full_like(theta, high))
-        from_, to = np.full_like(theta, low), np.full_like(theta, high)
-        cut = first != last
-        end = _halved(partial(lit, theta[cut]), from_[cut], to[cut], first[cut])
-        to[cut], from_[cut] = np.where(first[cut], end, high), np.where(first[cut], low, end)
-        span = (to - from_)[:, None]
-        weight = w_theta[:, None] * np.sin(theta)[:, None] * (span * wu) * (2.0 if symmetric else 1.0)
-        rows.append((_directions(wo, theta[:, None], from_[:, None] + span * u), weight))
-    wi = np.concatenate([directions.reshape(-1, 3) for directions, _ in rows])
-    return wi, np.concatenate([weight.ravel() for _, weight in rows]), spent
+    def rule(self, n: int) -> tuple[FloatArray, FloatArray]:
+        """Return directions (N, 3) and weights (N,), with ``n`` nodes along each side of a piece."""
+        u, wu = gauss_legendre(n)
+        theta, w_theta = _pieces(self._ends, *eased(u, wu))
+        w_theta = w_theta * np.sin(theta) * (2.0 if self._symmetric else 1.0)
+        directions, weights = [], []
+        for low, high in pairwise(_quarters(self._symmetric)):
+            first, last = self._at(low, theta), self._at(high, theta)
+            start, end = np.full_like(theta, low), np.full_like(theta, high)
+            cut = first != last
+            between = _halved(partial(self._lit, theta[cut]), start[cut], end[cut], first[cut])
+            start[cut], end[cut] = np.where(first[cut], low, between), np.where(first[cut], between, high)
+            span = (end - start)[:, None]
+            directions.append(_directions(self._wo, theta[:, None], start[:, None] + span * u).reshape(-1, 3))
+            weights.append((w_theta[:, None] * (span * wu)).ravel())
+        return np.concatenate(directions), np.concatenate(weights)
 
+    def _lit(self, theta: FloatArray, phi: FloatArray) -> BoolArray:
+        wi = _directions(self._wo, theta, phi)
+        self.evaluations += len(wi)
+        value = np.asarray(self._integrand(wi)).reshape(len(wi), -1)
+        return np.asarray((value != 0).any(axis=-1))
 
-def _at(lit: Callable[[FloatArray, FloatArray], BoolArray], phi: float, theta: FloatArray) -> BoolArray:
-    return lit(theta, np.full_like(theta, phi))
+    def _at(self, phi: float, theta: FloatArray) -> BoolArray:
+        return self._lit(theta, np.full_like(theta, phi))
 
 
 def _halved(

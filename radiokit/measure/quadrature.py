@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -25,7 +25,7 @@ from radiokit.measure.converge import (
     converge,
 )
 from radiokit.measure.curves import CURVES, Curve
-from radiokit.measure.polar import POLAR_SIZES, lit_rule, polar_rule
+from radiokit.measure.polar import POLAR_SIZES, LitRules, polar_rule
 from radiokit.measure.scan import DOUBT, SCAN, look_over, missed
 from radiokit.measure.slope import Lobe, find_lobe, mirrored, slope_map, slope_rule, turned
 from radiokit.measure.split import kinked, split_rule
@@ -99,6 +99,9 @@ BROAD, BRIEF = 0.3, 20_000
 
 CERTAIN = 1e-11
 """Relative agreement of polar rules that is believed: what they are cut for ends in digits, at once."""
+
+HOPELESS = 1e-5
+"""Relative difference of two rules of middle size that tells that larger ones will not be certain."""
 
 LOOK = 512
 """Points at which the shape of a smooth lobe is looked at, where it may be long and narrow."""
@@ -209,10 +212,8 @@ def hemisphere(
             return split_rule(wo, width * factor, n, ridge=ridge, symmetric=symmetric, curves=curves)
         return slope_rule(wo, width * factor, n, symmetric=symmetric)
 
-    most = min(max_evaluations, max(RULES, max_evaluations // 4))  # the rest is for refinement
-
-    def rules(most: int = most) -> Iterator[RuleSum]:
-        used = spent
+    def rules(most: int) -> Iterator[RuleSum]:
+        most, used = min(most, max_evaluations - spent), 0
         for k, (n, factor) in enumerate(zip(sizes, widths, strict=False)):
             least = (1.5 if cut else 1.0) * sides * n[0] * n[1]
             if k > 2 and used + least > most:
@@ -223,32 +224,44 @@ def hemisphere(
                 return
             yield apply_rule(integrand, wi, weight)
 
-    def lit() -> Iterator[RuleSum]:
-        for n in POLAR_SIZES:
-            wi, weight, seen = lit_rule(integrand, wo, n, symmetric=symmetric)
-            found = apply_rule(integrand, wi, weight)
-            yield replace(found, points=found.points + seen)
-
     # A direction is known to an eps; a narrow lobe magnifies that, and a grazing one more.
     rounding = ROUNDING + STEEPNESS / (core * float(wo[2]))
     memory = FORGETFUL if plain else MEMORY
     compare = partial(converge, smooth=smooth, rounding=rounding, memory=memory)
-    method = "slope-space quadrature"
-    if smooth or core < BROAD or max_evaluations < 4 * BRIEF:
-        found = compare(rules(), rtol, atol)
-    else:
-        found = compare(rules(BRIEF), rtol, atol)
-        if not found.converged:
-            sums = (apply_rule(integrand, *polar_rule(wo, n, symmetric=symmetric)) for n in POLAR_SIZES)
-            polar = compare(sums, min(rtol, CERTAIN), 0.0)
-            spent += found.evaluations
-            found, method = polar, "polar quadrature"
-        if not found.converged and scan is not None and scan.dark:
-            found = compare(lit(), min(rtol, CERTAIN), 0.0)
-            spent += found.evaluations
-        if not found.converged:
-            spent += found.evaluations
-            found, method = compare(rules(), rtol, atol), "slope-space quadrature"
+
+    found: Estimate
+
+    def slopes(most: int = max(RULES, max_evaluations // 4)) -> Estimate:  # the rest is for refinement
+        return compare(rules(most), rtol, atol)
+
+    def around(sums: Iterator[RuleSum]) -> Estimate:
+        # Where they are cut in the right places they end in digits, at once; nothing less is believed.
+        certain = min(atol, CERTAIN * float(np.min(np.abs(found.value))))
+        return compare(hopeful(sums), min(rtol, CERTAIN), certain)
+
+    def polar() -> Iterator[RuleSum]:
+        return (apply_rule(integrand, *polar_rule(wo, n, symmetric=symmetric)) for n in POLAR_SIZES)
+
+    def lit() -> Iterator[RuleSum]:
+        ends, before = LitRules(integrand, wo, symmetric=symmetric), 0
+        for n in POLAR_SIZES:
+            one = apply_rule(integrand, *ends.rule(n))
+            yield replace(one, points=one.points + ends.evaluations - before)
+            before = ends.evaluations
+
+    stages: list[tuple[str, Callable[[], Estimate]]] = [("slope-space quadrature", slopes)]
+    if not smooth and core >= BROAD and max_evaluations >= 4 * BRIEF:
+        stages = [(stages[0][0], lambda: slopes(BRIEF)), ("polar quadrature", lambda: around(polar()))]
+        if scan is not None and scan.dark:
+            stages.append(("polar quadrature", lambda: around(lit())))
+        stages.append(("slope-space quadrature", slopes))
+    method, first = stages[0]
+    found = first()
+    for name, stage in stages[1:]:
+        if found.converged:
+            break
+        spent += found.evaluations
+        method, found = name, stage()
 
     def lost() -> float:
         return 0.0 if scan is None else missed(found, scan.mean, scan.spread)
@@ -295,3 +308,13 @@ def _confirmed(integrand: Integrand, wo: FloatArray, lobe: Lobe) -> Lobe:
     blind = np.any(np.abs(here.mean) + DOUBT * here.spread < least)  # it looks even where nothing is seen
     best = other if not blind and np.max(here.spread) < np.max(there.spread) else lobe
     return replace(best, evaluations=other.evaluations + 2 * SCAN)
+
+
+def hopeful(rules: Iterator[RuleSum]) -> Iterator[RuleSum]:
+    """Go through rules until four of them do not look as if larger ones would be certain."""
+    values: list[Any] = []
+    for rule in rules:
+        yield rule
+        values.append(rule.value)
+        if len(values) > 3 and np.any(np.abs(values[-1] - values[-2]) > HOPELESS * rule.size):
+            return
