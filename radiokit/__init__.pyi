@@ -38,7 +38,9 @@ from .measure.kernels import kernel as kernel
 from .measure.kernels import select as select
 from .measure.twin import Twin as Twin
 from .physics import fresnel as fresnel
+from .physics import integrating_sphere as integrating_sphere
 from .physics import view_factor as view_factor
+from .worlds import enclosure as enclosure
 from .worlds.cases.catalogue import case as case
 from .worlds.cases.catalogue import list_cases as list_cases
 from .worlds.enclosure import enclosure_radiance as enclosure_radiance
