@@ -21,6 +21,8 @@ from .contracts.scalar import ScalarBSDF as ScalarBSDF
 from .faces.modeltable import models_table as models_table
 from .faces.plots.lobe import save_lobe as save_lobe
 from .faces.plots.lobe import show_lobe as show_lobe
+from .faces.render.furnace import furnace_image as furnace_image
+from .faces.render.render import render as render
 from .facts import directions as directions
 from .facts import errors as errors
 from .facts.estimate import Estimate as Estimate

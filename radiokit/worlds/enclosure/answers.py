@@ -276,7 +276,7 @@ def _falling(
     radius, phi = np.sqrt(u[:, 0]), 2.0 * np.pi * u[:, 1]
     local = np.stack([radius * np.cos(phi), radius * np.sin(phi), np.sqrt(1.0 - u[:, 0])], axis=-1)
     w = to_world(frame(normal), local)
-    found = np.pi * gather(room, room.follow(position, w), -w, generator)
-    for towards, strength in zip(*arriving(room.lights, position), strict=True):
+    found = np.pi * gather(room, room.follow(position, w), -w, generator, panels=False)
+    for towards, strength in zip(*arriving(room.lights, position, generator), strict=True):
         found += (np.maximum(dot(towards, normal), 0.0) * strength)[:, None]
     return np.asarray(found)

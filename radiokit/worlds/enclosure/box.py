@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from radiokit.contracts.vectors import as_point
+from radiokit.emitters.rectangle import Rectangle
 from radiokit.facts.errors import ParameterError
 from radiokit.worlds.enclosure.rooms import ON_WALL, FloatArray, IndexArray, Room, Triple, Wall, check_wall
 
@@ -24,8 +25,9 @@ class Box(Room):
     ----------
     walls : Wall or sequence of six
         All faces alike, or each.
-    lights : sequence of point lights
-        Inside, as for ``Sphere``.
+    lights : sequence of emitters
+        Point lights inside, as for ``Sphere``, and ``rectangle`` panels that lie in a face and shine inwards;
+        what falls on a panel is reflected as by the face around it.
     low, high : tuple of 3 floats
         Opposite corners [m], each coordinate of ``high`` above that of ``low``.
 
@@ -111,6 +113,17 @@ class Box(Room):
         """Return whether a point is off all faces, by more than rounding."""
         margin = ON_WALL * (self._ends[1] - self._ends[0])
         return bool(np.all((position > self._ends[0] + margin) & (position < self._ends[1] - margin)))
+
+    def holds(self, panel: Rectangle) -> bool:
+        """Return whether all corners lie in one face, whose normal the panel's is."""
+        corners, size = panel.corners, self._ends[1] - self._ends[0]
+        inside = np.all(np.abs(np.clip(corners, *self._ends) - corners) <= ON_WALL * size)
+        for part in range(6):
+            axis, inward = part // 2, -1.0 if part % 2 else 1.0
+            flat = np.all(np.abs(corners[:, axis] - self._ends[part % 2, axis]) <= ON_WALL * size[axis])
+            if inside and flat and inward * panel.normal[axis] > 0:
+                return True
+        return False
 
     def snap(self, position: FloatArray) -> FloatArray | None:
         """Return the point moved onto the nearest face."""

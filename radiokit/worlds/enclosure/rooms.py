@@ -13,8 +13,9 @@ import numpy.typing as npt
 from radiokit.contracts.blackbox import as_bsdf
 from radiokit.contracts.combining import spectrum, wavelengths
 from radiokit.contracts.parameters import Spectrum
-from radiokit.contracts.pointlight import PointLight
+from radiokit.emitters.rectangle import Rectangle
 from radiokit.facts.errors import ParameterError
+from radiokit.worlds.enclosure.lamps import Lamp
 
 __all__ = ["ON_WALL", "FloatArray", "IndexArray", "Room", "Triple", "Wall", "check_wall"]
 
@@ -63,7 +64,7 @@ class Room(ABC):
     """A closed room: parts of its wall by number, and point lights inside."""
 
     walls: Any
-    lights: tuple[PointLight, ...]
+    lights: tuple[Lamp, ...]
 
     @property
     @abstractmethod
@@ -94,6 +95,10 @@ class Room(ABC):
     def contains(self, position: FloatArray) -> bool:
         """Return whether a point (3,) is inside, off the wall."""
 
+    def holds(self, panel: Rectangle) -> bool:
+        """Return whether a luminous panel lies in a flat part of the wall and shines into the room."""
+        return False
+
     @abstractmethod
     def snap(self, position: FloatArray) -> FloatArray | None:
         """Return the point of the wall next to one (3,) that is meant to be there, None if it is not."""
@@ -111,7 +116,10 @@ class Room(ABC):
     def _check(self) -> None:
         object.__setattr__(self, "lights", _lights(self.lights))
         for light in self.lights:
-            if not self.contains(np.array(light.position)):
+            if isinstance(light, Rectangle):
+                if not self.holds(light):
+                    raise ParameterError("lights", light, "in a face of the box, shining inwards")
+            elif not self.contains(np.array(light.position)):
                 raise ParameterError("lights", light, "inside the room")
         assert self.wavelengths is None or self.wavelengths
 
@@ -122,9 +130,9 @@ def check_wall(name: str, wall: Any) -> None:
         raise ParameterError(name, wall, "a Wall")
 
 
-def _lights(lights: Any) -> tuple[PointLight, ...]:
-    found = (lights,) if isinstance(lights, PointLight) else tuple(lights)
+def _lights(lights: Any) -> tuple[Lamp, ...]:
+    found = (lights,) if isinstance(lights, Lamp) else tuple(lights)
     for light in found:
-        if not isinstance(light, PointLight):
-            raise ParameterError("lights", light, "point lights: emitters that have a position")
+        if not isinstance(light, Lamp):
+            raise ParameterError("lights", light, "point lights, or rectangles in the faces of a box")
     return found

@@ -13,7 +13,7 @@ import numpy as np
 from radiokit.contracts.bsdf import BSDF
 from radiokit.facts.directions import frame, to_local, to_world
 from radiokit.facts.errors import RadiokitError
-from radiokit.worlds.enclosure.lamps import arriving
+from radiokit.worlds.enclosure.lamps import arriving, shown
 from radiokit.worlds.enclosure.rooms import FloatArray, IndexArray, Room
 
 __all__ = ["BLOCK", "gather"]
@@ -25,7 +25,12 @@ _MEAN_BOUNCES = 5000  # of all paths in a block; an albedo of 0.999 needs 1000
 
 
 def gather(
-    room: Room, position: FloatArray, direction: FloatArray, generator: np.random.Generator
+    room: Room,
+    position: FloatArray,
+    direction: FloatArray,
+    generator: np.random.Generator,
+    *,
+    panels: bool = True,
 ) -> FloatArray:
     """Return the radiance that leaves points (N, 3) of the wall in unit directions (N, 3).
 
@@ -35,6 +40,9 @@ def gather(
     position, direction : ndarray, shape (N, 3)
         World coordinates; the directions point into the room.
     generator : numpy.random.Generator
+    panels : bool
+        Whether the first points show the panels that they lie on; later ones do not, for there each point
+        of a wall is lit by the panels, once.
 
     Returns
     -------
@@ -48,6 +56,8 @@ def gather(
     """
     n = len(position)
     total = np.zeros((n, room.wavelengths or 1))
+    if panels:
+        total += shown(room.lights, position)[:, None]
     throughput = np.ones_like(total)
     path = np.arange(n)
     bounces = 0
@@ -62,7 +72,7 @@ def gather(
         part = room.part_of(position)
         axes = frame(room.normals(position, part))
         wo = to_local(axes, direction)
-        lamps = arriving(room.lights, position)
+        lamps = arriving(room.lights, position, generator)
         alive = np.zeros(len(path), dtype=bool)
         onward = np.empty_like(wo)
         for number, wall in enumerate(room.parts):
