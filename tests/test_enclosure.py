@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
@@ -18,6 +19,7 @@ from radiokit.bsdfs.mirror import Mirror
 from radiokit.bsdfs.phong import Phong
 from radiokit.emitters.directional import Directional
 from radiokit.emitters.point import Point
+from radiokit.emitters.rectangle import Rectangle
 from radiokit.emitters.spot import Spot
 from radiokit.facts.errors import ParameterError, RadiokitError, UnknownNameError
 from radiokit.measure.quadrature import hemisphere
@@ -335,6 +337,67 @@ def test_a_question_stops_when_it_is_told(seed):
     with ThreadPoolExecutor(2) as two:
         alone, shared = (radiance(room, samples=20_000, executor=e, **ask) for e in (None, two))
         assert alone.value == shared.value
+
+
+def test_many_points_at_once(seed):
+    places, inward = [(0.5, 0.5, 0), (1, 0.3, 0.2)], [(0, 0, 1), (-0.6, 0.8, 0)]
+    room = Box(walls=[grey(r, 0.2) for r in (0.0, 0.2, 0.5, 0.7, 0.9, 0.4)])
+    ask = {"samples": 4000, "rng": seed}
+    both = radiance(room, position=places, direction=inward, **ask)
+    for k in range(2):
+        one = radiance(room, position=places[k], direction=inward[k], samples=4000, rng=seed + 1)
+        assert abs(one.value - both.value[k]) < 5 * math.hypot(one.error, both.error[k])
+    assert irradiance(room, position=places, **ask).value.shape == (2,)
+    exact = irradiance(BALL, position=list(PLACES.values()))
+    assert exact.value[2] == irradiance(BALL, position=PLACES[2]).value
+    three = Box(walls=grey([0.2, 0.5, 0.9], [1.0, 1.0, 1.0]))
+    found = radiance(three, position=places, direction=inward, method="random walk", **ask)
+    assert np.all(z_test(found, np.tile([1.25, 2.0, 10.0], (2, 1))) > LEVEL)
+    with pytest.raises(ParameterError, match="shape"):
+        radiance(room, position=places[0], direction=inward)
+
+
+def test_a_panel_in_the_ceiling(seed):
+    """What it sends directly has a closed form; all that it sends is absorbed."""
+    panel = Rectangle(center=(0, 0, 1), normal=(0, 0, -1), width=0.6, height=0.6, radiance=12.0)
+    black = Box(walls=Wall(), low=(-1, -1, -1), lights=panel)
+    for place, normal in (((0.3, 0.9, -1), (0, 0, 1)), ((1, 0.2, 0.5), (-1, 0, 0))):
+        found = irradiance(black, position=place, samples=8000, rng=seed)
+        exact = panel.irradiance_at(np.array(place, float), np.array(normal, float))
+        assert z_test(found, exact.value) > LEVEL
+    rho = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)
+    room = Box(walls=[grey(r) for r in rho], low=(-1, -1, -1), lights=[panel])
+    kept = [flux(room, part=k, samples=4000, rng=seed + k).scaled(1 - r) for k, r in enumerate(rho)]
+    total = sum(each.value for each in kept)
+    spread = math.sqrt(sum(each.error**2 for each in kept))
+    assert abs(total - panel.flux().value) < 4.5 * spread
+    shining = radiance(black, position=(0.1, 0.1, 1), direction=(0, 0, -1), samples=10, rng=seed)
+    assert (shining.value, shining.error < 1e-13) == (12.0, True)
+    for wrong in ({"normal": (0, 0, 1)}, {"center": (0.9, 0, 1)}, {"center": (0, 0, 0.5)}):
+        with pytest.raises(ParameterError, match="in a face of the box"):
+            Box(walls=grey(0.5), low=(-1, -1, -1), lights=dataclasses.replace(panel, **wrong))
+    with pytest.raises(ParameterError, match="in a face of the box"):
+        Sphere(wall=grey(0.5), radius=2, lights=panel)
+
+
+@pytest.mark.parametrize("place", [(0, 0, -1), (0.6, 0.0, 0.8), (-0.48, 0.64, 0.6)])
+def test_lamps_near_and_far_at_50_digits(place):
+    """What four lamps send to a point, and what the sphere adds, for numbers as they are."""
+    lamps = [(0.0, 0.0, -0.9999), (0.5, -0.3, 0.2), (-0.4, 0.5, 0.6), (0.59, 0.0, 0.79)]
+    room = Sphere(wall=grey(0.9), lights=[Point(position=p, intensity=1.5) for p in lamps])
+    found = irradiance(room, position=place)
+    with mpmath.workdps(50):
+        x = [mpf(float(c)) for c in place]
+        length = mpmath.sqrt(sum(c * c for c in x))
+        x = [c / length for c in x]
+        direct = mpf(0)
+        for lamp in lamps:
+            way = [mpf(q) - c for q, c in zip(lamp, x, strict=True)]
+            square = sum(c * c for c in way)
+            direct += mpf(1.5) * -sum(c * n for c, n in zip(way, x, strict=True)) / square ** mpf(1.5)
+        truth = direct + 4 * mpf(1.5) * mpf(0.9) / (1 - mpf(0.9))
+        assert abs(truth - mpf(found.value)) <= mpf(found.error)
+        assert found.error < 1e-9 * truth
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable
 from concurrent.futures import Executor
+from dataclasses import replace
 from functools import partial
 from typing import Any, Literal
 
@@ -70,8 +71,8 @@ def render(
     samples : int, optional
         As for ``shade``; 256 for each pixel of the random walk, without a tolerance.
     rng : int, numpy.random.Generator or None
-        Each pixel has a generator of its own, made from this seed and its number: the picture is the same
-        for any number of workers.
+        Each pixel, or each row of a random walk, has a generator of its own, made from this seed and its
+        number: the picture is the same for any number of workers.
     executor : concurrent.futures.Executor, optional
         Shades the rows of pixels.
     progress : callable, optional
@@ -134,21 +135,39 @@ def render(
 
 
 def _row(setting: Setting, bounces: Bounces, how: dict[str, Any], seed: int, row: int) -> Pixels:
-    """Shade the pixels of one row."""
+    """Shade the pixels of one row; a random walk takes them all together."""
     hits, rays, width = setting.trace(setting.camera), setting.camera.rays[row], setting.camera.width
     columns = np.flatnonzero(hits.material[row] >= 0)
+    place, towards, normal = hits.position[row, columns], -rays[columns], hits.normal[row, columns]
+    numbers = row * width + columns
+    if bounces == "all" and setting.room is not None:
+        if not len(columns):
+            return Pixels(numbers, ())
+        generator = block_generator(seed, row)
+        every = radiance(setting.room, position=place, direction=towards, rng=generator, **how)
+        return Pixels(
+            numbers,
+            tuple(replace(every, value=v, error=e) for v, e in zip(every.value, every.error, strict=True)),
+        )
     found = []
-    for column in columns:
-        here, towards = hits.position[row, column], -rays[column]
-        generator = block_generator(seed, row * width + int(column))
-        if bounces == "all" and setting.room is not None:
-            found.append(radiance(setting.room, position=here, direction=towards, rng=generator, **how))
-        elif hits.lamp[row, column]:
-            found.append(rounding(np.full(3, setting.seen(-towards, np.array(setting.camera.position)))))
-        else:
-            material = setting.materials[hits.material[row, column]]
-            normal = hits.normal[row, column]
-            found.append(
-                shade(material, setting.lights, towards, normal=normal, position=here, rng=generator, **how)
+    for k, column in enumerate(columns):
+        if hits.lamp[row, column]:
+            seen = setting.seen(rays[column], np.array(setting.camera.position))
+            found.append(rounding(np.full(3, seen)))
+            continue
+        material, generator = (
+            setting.materials[hits.material[row, column]],
+            block_generator(seed, int(numbers[k])),
+        )
+        found.append(
+            shade(
+                material,
+                setting.lights,
+                towards[k],
+                normal=normal[k],
+                position=place[k],
+                rng=generator,
+                **how,
             )
-    return Pixels(row * width + columns, tuple(found))
+        )
+    return Pixels(numbers, tuple(found))

@@ -53,9 +53,9 @@ def draw_sheet(pictures: Sequence[tuple[str, FurnaceImage]], path: str | Path) -
         colour = "black" if outcome is Outcome.HOLDS else "firebrick"
         axis.set_title(name, fontsize=8, color=colour)
     figure.suptitle(
-        "A furnace of radiance 1 (grey). Left halves: what each model reflects. Right halves: with what it "
-        f"emits at\nthe furnace's temperature, {GAIN:g} times the difference from the background. Red: it does "
-        "not vanish.",
+        "A furnace of radiance 1 (grey). Left halves: what each model reflects. Right halves: with what "
+        f"it emits\nat the furnace's temperature, {GAIN:g} times the difference from the background. Red: it "
+        "does not vanish.",
         fontsize=9,
     )
     try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from concurrent.futures import Executor
@@ -13,26 +14,22 @@ import numpy as np
 import numpy.typing as npt
 
 from radiokit.contracts.vectors import as_point
-from radiokit.facts.directions import dot, frame, spherical_to_cartesian, to_world
+from radiokit.facts.checking import reject
+from radiokit.facts.directions import check_directions, dot
 from radiokit.facts.errors import ParameterError, RadiokitError, UnknownNameError
 from radiokit.facts.estimate import Estimate
-from radiokit.measure.lattice import kronecker
 from radiokit.measure.montecarlo import mean
 from radiokit.worlds.enclosure.exact import Light, known_light
-from radiokit.worlds.enclosure.lamps import arriving
-from radiokit.worlds.enclosure.rooms import FloatArray, Room, Wall
-from radiokit.worlds.enclosure.walk import BLOCK, gather
-from radiokit.worlds.planning import check_direction
+from radiokit.worlds.enclosure.rooms import FloatArray, Room
+from radiokit.worlds.enclosure.walk import BLOCK, fluxes, irradiances, radiances
 
-__all__ = ["METHODS", "SAMPLES", "absorbs_nothing", "flux", "irradiance", "radiance"]
+__all__ = ["METHODS", "flux", "irradiance", "radiance"]
 
 METHODS = ("auto", "closed form", "random walk")
 """What the questions of this module understand."""
 
 SAMPLES, MOST_SAMPLES = 1 << 16, 1 << 24
 """Paths by default, and at most when a relative error is asked for."""
-
-_PROBE = spherical_to_cartesian([0.1, 0.7, 1.2, 1.5], [0.0, 2.0, 4.0, 5.0])
 
 
 @dataclass(frozen=True)
@@ -64,17 +61,18 @@ def radiance(
     Parameters
     ----------
     room : Sphere or Box
-    position : array_like, shape (3,)
+    position : array_like, shape (3,) or (N, 3)
         On the wall [m], to within 1e-9 of the room's size.
-    direction : array_like, shape (3,)
-        Unit vector from the wall into the room.
+    direction : array_like, shape (3,) or (N, 3)
+        Unit vector from the wall into the room; one for all points, or one for each.
     method : {"auto", "closed form", "random walk"}
         The closed form serves diffuse spheres with isotropic point lights, and rooms in which each wall
         emits the same multiple of what it absorbs (1 − ρ, the same for all directions); ``auto`` takes it
         where it applies.
     samples : int, optional
-        Paths; with ``rtol`` or ``seconds`` the most that are followed. By default 2¹⁶, with ``rtol`` at most
-        2²⁴, and with ``seconds`` as many as there is time for. An estimate's ``evaluations`` counts paths.
+        Paths from each point; with ``rtol`` or ``seconds`` the most that are followed. By default 2¹⁶, with
+        ``rtol`` at most 2²⁴, and with ``seconds`` as many as there is time for. An estimate's ``evaluations``
+        counts them.
     rtol : float, optional
         Stop once the standard error is within this share of the mean.
     seconds : float, optional
@@ -87,7 +85,7 @@ def radiance(
     Returns
     -------
     Estimate
-        Of shape () or (K,).
+        Of shape () or (N,), with (..., K) for K wavelengths.
 
     Raises
     ------
@@ -111,12 +109,16 @@ def radiance(
     1.0
     """
     effort = _Effort(method, samples, rtol, seconds, rng, executor)
-    place, normal = _place(room, position)
-    towards = check_direction("direction", direction)
-    if not dot(towards, normal) > 0:
-        raise ParameterError("direction", tuple(towards.tolist()), "into the room")
-    draw = partial(_radiances, room, place, towards)
-    return _answer(room, effort, draw, lambda light: light.radiance(place, normal))
+    points = _Points.of(room, position)
+    towards = check_directions("direction", direction)
+    if towards.shape not in ((3,), (*points.shape, 3)):
+        raise ParameterError(
+            "direction", towards.shape, f"of shape (3,), or as position is, {points.place.shape}"
+        )
+    towards = np.broadcast_to(towards, points.place.shape)
+    reject("direction", towards, ~(dot(towards, points.normal) > 0), "into the room")
+    draw = partial(radiances, room, points.place, towards)
+    return _answer(room, effort, draw, lambda light: points.each(light.radiance), points.shape)
 
 
 def irradiance(
@@ -141,9 +143,9 @@ def irradiance(
     4.0
     """
     effort = _Effort(method, samples, rtol, seconds, rng, executor)
-    place, normal = _place(room, position)
-    draw = partial(_irradiances, room, place, normal)
-    return _answer(room, effort, draw, lambda light: light.irradiance(place, normal))
+    points = _Points.of(room, position)
+    draw = partial(irradiances, room, points.place, points.normal)
+    return _answer(room, effort, draw, lambda light: points.each(light.irradiance), points.shape)
 
 
 def flux(
@@ -178,7 +180,7 @@ def flux(
     _check_room(room)
     if not (type(part) is int and 0 <= part < len(room.parts)):
         raise ParameterError("part", part, f"one of the room's {len(room.parts)} parts, counted from 0")
-    return _answer(room, effort, partial(_fluxes, room, part), lambda light: light.flux(part))
+    return _answer(room, effort, partial(fluxes, room, part), lambda light: light.flux(part))
 
 
 def _check_room(room: Any) -> None:
@@ -186,15 +188,33 @@ def _check_room(room: Any) -> None:
         raise ParameterError("room", room, "a Sphere or a Box")
 
 
-def _place(room: Any, position: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
-    """Return the wall's point (3,) and its normal (3,)."""
-    _check_room(room)
-    given = as_point("position", position)
-    found = room.snap(np.array(given))
-    if found is None:
-        raise ParameterError("position", given, "on the room's wall")
-    rows = found[None, :]
-    return found, room.normals(rows, room.part_of(rows))[0]
+@dataclass(frozen=True)
+class _Points:
+    """Points (N, 3) of a wall with their normals; ``shape`` is () for a single one and (N,) for many."""
+
+    place: FloatArray
+    normal: FloatArray
+    shape: tuple[int, ...]
+
+    @classmethod
+    def of(cls, room: Any, position: npt.ArrayLike) -> _Points:
+        _check_room(room)
+        many = np.ndim(position) == 2 and np.size(position) > 0
+        given = [as_point("position", each) for each in (np.asarray(position) if many else [position])]
+        found = [room.snap(np.array(each)) for each in given]
+        for each, snapped in zip(given, found, strict=True):
+            if snapped is None:
+                raise ParameterError("position", each, "on the room's wall")
+        place = np.array(found)
+        return cls(place, room.normals(place, room.part_of(place)), (len(place),) if many else ())
+
+    def each(self, ask: Callable[[FloatArray, FloatArray], Estimate]) -> Estimate:
+        """Return the closed-form answers of all points as one."""
+        found = [ask(place, normal) for place, normal in zip(self.place, self.normal, strict=True)]
+        if not self.shape:
+            return found[0]
+        value, error = (np.array([getattr(one, name) for one in found]) for name in ("value", "error"))
+        return replace(found[0], value=value, error=error)
 
 
 def _answer(
@@ -202,12 +222,13 @@ def _answer(
     effort: _Effort,
     draw: Callable[[np.random.Generator, int], FloatArray],
     exactly: Callable[[Light], Estimate],
+    shape: tuple[int, ...] = (),
 ) -> Estimate:
     """Return the answer in closed form or by following paths."""
     if effort.method not in METHODS:
         raise UnknownNameError("method", effort.method, METHODS)
     start = time.perf_counter()
-    if all(absorbs_nothing(wall) for wall in room.parts):
+    if all(wall.absorbs_nothing for wall in room.parts):
         allowed = "with a wall that absorbs: with an albedo of 1 the radiance in a closed room diverges"
         raise ParameterError("room", room, allowed)
     light = known_light(room) if effort.method != "random walk" else None
@@ -222,61 +243,17 @@ def _answer(
     most = effort.samples
     if most is None and effort.seconds is None:
         most = SAMPLES if effort.rtol is None else MOST_SAMPLES
-    return mean(
+    found = mean(
         draw,
         samples=most,
         rng=effort.rng,
-        block=BLOCK,
+        block=max(1, BLOCK // math.prod(shape)),
         rtol=effort.rtol,
         seconds=effort.seconds,
         executor=effort.executor,
         method="random walk",
     )
-
-
-def absorbs_nothing(wall: Wall) -> bool:
-    """Return whether every sample of every probed direction keeps all of its weight."""
-    if wall.black:
-        return False
-    u = kronecker(64, wall.f.dimensions)
-    for wo in _PROBE:
-        _, weight = wall.f.sample(u, np.broadcast_to(wo, (len(u), 3)))
-        if np.any(np.mean(weight, axis=0) < 1 - 1e-12):
-            return False
-    return True
-
-
-def _shaped(room: Room, values: FloatArray) -> FloatArray:
-    return values[:, 0] if room.wavelengths is None else values
-
-
-def _radiances(
-    room: Room, place: FloatArray, towards: FloatArray, generator: np.random.Generator, n: int
-) -> FloatArray:
-    return _shaped(room, gather(room, np.tile(place, (n, 1)), np.tile(towards, (n, 1)), generator))
-
-
-def _irradiances(
-    room: Room, place: FloatArray, normal: FloatArray, generator: np.random.Generator, n: int
-) -> FloatArray:
-    return _shaped(room, _falling(room, np.tile(place, (n, 1)), np.tile(normal, (n, 1)), generator))
-
-
-def _fluxes(room: Room, part: int, generator: np.random.Generator, n: int) -> FloatArray:
-    position = room.spread(generator, n, part)
-    normal = room.normals(position, np.full(n, part))
-    return _shaped(room, room.area(part) * _falling(room, position, normal, generator))
-
-
-def _falling(
-    room: Room, position: FloatArray, normal: FloatArray, generator: np.random.Generator
-) -> FloatArray:
-    """Return irradiances (N, K): the lamps', and π times the radiance from a cosine-weighted direction."""
-    u = generator.random((len(position), 2))
-    radius, phi = np.sqrt(u[:, 0]), 2.0 * np.pi * u[:, 1]
-    local = np.stack([radius * np.cos(phi), radius * np.sin(phi), np.sqrt(1.0 - u[:, 0])], axis=-1)
-    w = to_world(frame(normal), local)
-    found = np.pi * gather(room, room.follow(position, w), -w, generator, panels=False)
-    for towards, strength in zip(*arriving(room.lights, position, generator), strict=True):
-        found += (np.maximum(dot(towards, normal), 0.0) * strength)[:, None]
-    return np.asarray(found)
+    if not shape:
+        return found
+    shape = shape if room.wavelengths is None else (*shape, room.wavelengths)
+    return replace(found, value=np.reshape(found.value, shape), error=np.reshape(found.error, shape))

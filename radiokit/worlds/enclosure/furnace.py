@@ -12,7 +12,7 @@ from radiokit.contracts.blackbox import as_bsdf
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.facts.source import Source
-from radiokit.worlds.enclosure.answers import absorbs_nothing, radiance
+from radiokit.worlds.enclosure.answers import radiance
 from radiokit.worlds.enclosure.rooms import Wall
 from radiokit.worlds.enclosure.sphere import Sphere
 from radiokit.worlds.planning import check_direction
@@ -79,7 +79,7 @@ def enclosure_radiance(
     towards = check_direction("wo", wo)
     if not towards[2] > 0:
         raise ParameterError("wo", tuple(towards.tolist()), "above the horizon (z > 0)")
-    if absorbs_nothing(Wall(f=model)):
+    if Wall(f=model).absorbs_nothing:
         allowed = "a material that absorbs: with an albedo of 1 the radiance in a closed room diverges"
         raise ParameterError("f", model, allowed)
     room = Sphere(wall=Wall(f=model, emitted=emitted), radius=radius)

@@ -14,7 +14,9 @@ from radiokit.contracts.blackbox import as_bsdf
 from radiokit.contracts.combining import spectrum, wavelengths
 from radiokit.contracts.parameters import Spectrum
 from radiokit.emitters.rectangle import Rectangle
+from radiokit.facts.directions import spherical_to_cartesian
 from radiokit.facts.errors import ParameterError
+from radiokit.measure.lattice import kronecker
 from radiokit.worlds.enclosure.lamps import Lamp
 
 __all__ = ["ON_WALL", "FloatArray", "IndexArray", "Room", "Triple", "Wall", "check_wall"]
@@ -24,6 +26,8 @@ IndexArray = npt.NDArray[np.intp]
 Triple = tuple[float, float, float]
 
 ON_WALL = 1e-9  # of the room's size: how far off the wall a point may be that is meant to be on it
+
+_PROBE = spherical_to_cartesian([0.1, 0.7, 1.2, 1.5], [0.0, 2.0, 4.0, 5.0])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,6 +57,18 @@ class Wall:
             if self.f.transmissive:
                 raise ParameterError("f", self.f, "a surface that no light passes")
         object.__setattr__(self, "emitted", spectrum("emitted", self.emitted))
+
+    @property
+    def absorbs_nothing(self) -> bool:
+        """Whether every sample of every probed direction keeps all of its weight."""
+        if self.black:
+            return False
+        u = kronecker(64, self.f.dimensions)
+        for wo in _PROBE:
+            _, weight = self.f.sample(u, np.broadcast_to(wo, (len(u), 3)))
+            if np.any(np.mean(weight, axis=0) < 1 - 1e-12):
+                return False
+        return True
 
     @property
     def black(self) -> bool:

@@ -11,12 +11,12 @@ from __future__ import annotations
 import numpy as np
 
 from radiokit.contracts.bsdf import BSDF
-from radiokit.facts.directions import frame, to_local, to_world
+from radiokit.facts.directions import dot, frame, to_local, to_world
 from radiokit.facts.errors import RadiokitError
 from radiokit.worlds.enclosure.lamps import arriving, shown
 from radiokit.worlds.enclosure.rooms import FloatArray, IndexArray, Room
 
-__all__ = ["BLOCK", "gather"]
+__all__ = ["BLOCK", "fluxes", "gather", "irradiances", "radiances"]
 
 BLOCK = 8192
 """Paths in a block."""
@@ -108,3 +108,43 @@ def _lit(
         value = f.evaluate(wi, wo).reshape(len(rows), -1)
         total = total + value * (np.maximum(wi[:, 2], 0.0) * strength[rows])[:, None]
     return total
+
+
+def radiances(
+    room: Room, place: FloatArray, towards: FloatArray, generator: np.random.Generator, n: int
+) -> FloatArray:
+    """Return n samples of the radiance from each of N points: (n, N), or (n, N K) for K wavelengths."""
+    return _rows(room, gather(room, np.tile(place, (n, 1)), np.tile(towards, (n, 1)), generator), len(place))
+
+
+def irradiances(
+    room: Room, place: FloatArray, normal: FloatArray, generator: np.random.Generator, n: int
+) -> FloatArray:
+    """Return n samples of the irradiance of each of N points, as ``radiances`` does."""
+    return _rows(room, _falling(room, np.tile(place, (n, 1)), np.tile(normal, (n, 1)), generator), len(place))
+
+
+def fluxes(room: Room, part: int, generator: np.random.Generator, n: int) -> FloatArray:
+    """Return n samples of the flux that falls on a part: (n,), or (n, K)."""
+    position = room.spread(generator, n, part)
+    normal = room.normals(position, np.full(n, part))
+    return _rows(room, room.area(part) * _falling(room, position, normal, generator), 1)
+
+
+def _rows(room: Room, values: FloatArray, points: int) -> FloatArray:
+    single = points == 1 and room.wavelengths is None
+    return values[:, 0] if single else values.reshape(-1, points * values.shape[1])
+
+
+def _falling(
+    room: Room, position: FloatArray, normal: FloatArray, generator: np.random.Generator
+) -> FloatArray:
+    """Return irradiances (N, K): the lamps', and π times the radiance from a cosine-weighted direction."""
+    u = generator.random((len(position), 2))
+    radius, phi = np.sqrt(u[:, 0]), 2.0 * np.pi * u[:, 1]
+    local = np.stack([radius * np.cos(phi), radius * np.sin(phi), np.sqrt(1.0 - u[:, 0])], axis=-1)
+    w = to_world(frame(normal), local)
+    found = np.pi * gather(room, room.follow(position, w), -w, generator, panels=False)
+    for towards, strength in zip(*arriving(room.lights, position, generator), strict=True):
+        found += (np.maximum(dot(towards, normal), 0.0) * strength)[:, None]
+    return np.asarray(found)
