@@ -148,6 +148,8 @@ def test_png_files(tmp_path):
     errors = imread(picture.save_error(tmp_path / "error.png"))
     assert errors[2, 3, 0] == 1.0
     assert imread(ramp(3).save(tmp_path / "rgb.png")).shape[:2] == (3, 4)
+    assert picture._repr_png_().startswith(b"\x89PNG")
+    assert ramp(2)._repr_png_() is None
 
 
 def test_exr_files(tmp_path):
@@ -349,6 +351,9 @@ def test_a_function_in_a_file_is_rendered(capsys, tmp_path):
     code, out, _ = run(capsys, *words)
     assert code == 0
     assert "as_bsdf(half)" in out
+    code, _, err = run(capsys, *words, "--workers", 2)
+    assert code == 2
+    assert "to be rendered by other processes" in err
 
 
 @pytest.mark.parametrize(

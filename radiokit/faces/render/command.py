@@ -54,9 +54,12 @@ def render(
     files = [path for path in (png, exr, error_png, error_exr) if path is not None]
     if not files:
         png = Path("render.png")
-    # A function in a file is not known to other processes.
-    count = 1 if model is not None and ":" in model else available_workers()
-    count = count if workers is None and scheduler is None else workers  # type: ignore[assignment]
+    count = workers
+    if model is not None and ":" in model:  # other processes do not know a function in a file
+        if scheduler is not None or workers not in (None, 1):
+            raise ParameterError("model", model, "a model's name, to be rendered by other processes")
+    elif workers is None and scheduler is None:
+        count = available_workers()
     how: dict[str, Any] = {
         "light": light,
         "size": size,
@@ -68,7 +71,7 @@ def render(
     }
     with open_executor(count, scheduler) as executor, progress_bar("rendering", not json) as progress:
         if model == "all":
-            code = _sheet(scene, light, parameters, how, executor, png, json)
+            code = _sheet(scene, light, parameters, how, executor, progress, png, json)
         else:
             f = None if model is None else load_target(model, parameters)
             picture = picture_of(scene, f, executor=executor, progress=progress, **how)
@@ -113,12 +116,14 @@ def _sheet(
     parameters: dict[str, Any],
     how: dict[str, Any],
     executor: Any,
+    progress: Any,
     png: Path | None,
     json: bool,
 ) -> int:
     """Draw all models in the isothermal furnace; the code is 1 only for what no claim explains."""
     from radiokit.contracts.bsdf import bsdf, list_bsdfs
     from radiokit.faces.render.furnace import furnace_image
+    from radiokit.faces.render.pixels import followed
     from radiokit.faces.render.sheet import draw_sheet
 
     if scene != "sphere" or light != "isothermal":
@@ -129,11 +134,11 @@ def _sheet(
         raise ParameterError("png", None, "given: all models are drawn on one PNG")
     own = "mc-bsdf" if how["method"] == "auto" else how["method"]
     options = {name: how[name] for name in ("size", "samples", "rtol", "rng")}
-    pictures = [
-        (name, furnace_image(bsdf(name), method=own, executor=executor, **options)) for name in list_bsdfs()
-    ]
+    names = list_bsdfs()
+    drawn = (furnace_image(bsdf(name), method=own, executor=executor, **options) for name in names)
+    pictures = list(zip(names, followed(drawn, len(names), progress), strict=True))
     saved = draw_sheet(pictures, png)
-    verdicts = {name: picture.verdict(1e-6) for name, picture in pictures}
+    verdicts = {name: picture.verdict() for name, picture in pictures}
     if json:
         show_json(
             {"models": {name: each.to_json() for name, each in verdicts.items()}, "files": [str(saved)]}

@@ -70,7 +70,7 @@ class FurnaceImage(Image):
     model: BSDF
     balances: tuple[_Balance, ...]
 
-    def verdict(self, level: float = 1e-3) -> Verdict:
+    def verdict(self, level: float = 1e-6) -> Verdict:
         """Judge whether the body vanishes into its background of radiance 1.
 
         Bounds must hold; statistical pixels are put to a z-test, whose level is shared by all directions.

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +16,7 @@ from radiokit.facts.jsonable import jsonable
 __all__ = ["Image", "srgb"]
 
 FloatArray = npt.NDArray[np.float64]
+File = TypeVar("File", Path, BytesIO)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -112,6 +114,14 @@ class Image:
             return _write_exr(file, {"": self.error})
         raise ParameterError("path", str(path), "a name that ends in .png or .exr")
 
+    def _repr_png_(self) -> bytes | None:
+        """Return the picture for a notebook, if it can be seen."""
+        if self.values.ndim > 2 and self.values.shape[2] != 3:
+            return None
+        stream = BytesIO()
+        _write_png(stream, self._grey_or_rgb(self.values), 1.0)
+        return stream.getvalue()
+
     def _grey_or_rgb(self, values: FloatArray) -> FloatArray:
         if values.ndim > 2 and values.shape[2] != 3:
             raise ParameterError("wavelengths", values.shape[2], "1 or 3 for a picture that can be seen")
@@ -130,14 +140,14 @@ def srgb(linear: npt.ArrayLike) -> Any:
     return np.where(x <= 0.0031308, 12.92 * x, 1.055 * np.maximum(x, 0.0031308) ** (1 / 2.4) - 0.055)[()]
 
 
-def _write_png(file: Path, rgb: FloatArray, white: float) -> Path:
+def _write_png(file: File, rgb: FloatArray, white: float) -> File:
     from matplotlib.image import imsave
 
     if not (np.isfinite(white) and white > 0):
         raise ParameterError("white", white, "a finite radiance above 0")
     levels = np.round(255 * srgb(rgb / white)).astype(np.uint8)
     try:
-        imsave(file, levels)
+        imsave(file, levels, format="png")
     except OSError as error:
         raise RadiokitError(f"cannot write {file}: {error}", path=str(file)) from error
     return file
