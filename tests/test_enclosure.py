@@ -281,6 +281,23 @@ def test_lamps_are_asked_by_their_contract(seed):
     assert one.method == "random walk"
 
 
+def test_a_spot_in_a_sphere_of_one_piece(seed):
+    spot = Spot(position=(0.2, 0, 0.5), direction=(0, 0.3, -1), intensity=2.0, outer=0.7, inner=0.4)
+    room = Sphere(wall=grey(0.6, 0.1), lights=spot)
+    for place, lit in (((0, 0, -1), True), ((0, 0, 1), False)):
+        ask = {"position": place, "samples": 1000, "rng": seed}
+        exact = irradiance(room, **ask)
+        assert exact.method == "closed form"
+        assert z_test(irradiance(room, method="random walk", **ask), exact.value) > LEVEL
+        added = (math.pi * 0.1 * 4 * math.pi + 0.6 * spot.flux().value) / (4 * math.pi * 0.4)
+        assert (exact.value > added * (1 + 1e-9)) == lit
+        assert lit or exact.value == pytest.approx(added, rel=1e-13)
+    total = flux(room, part=0)
+    assert total.value * 0.4 == pytest.approx(spot.flux().value + 0.1 * math.pi * 4 * math.pi, rel=1e-13)
+    with pytest.raises(RadiokitError, match="no closed form"):
+        flux(dataclasses.replace(room, caps=CAPS[:1]), part=0, method="closed form")
+
+
 def test_a_box_lit_by_a_lamp_sends_on_what_it_gets(seed):
     """The lamp's flux is absorbed by six walls of six reflectances, to within the walks' errors."""
     rho = (0.0, 0.2, 0.5, 0.7, 0.9, 0.4)
@@ -355,6 +372,16 @@ def test_many_points_at_once(seed):
     assert np.all(z_test(found, np.tile([1.25, 2.0, 10.0], (2, 1))) > LEVEL)
     with pytest.raises(ParameterError, match="shape"):
         radiance(room, position=places[0], direction=inward)
+
+
+def test_an_emitting_face_of_a_black_box_is_a_rectangle(seed):
+    room = Box(walls=[Wall(emitted=2.0), *[Wall()] * 5], high=(2, 3, 4))
+    face = Rectangle(center=(0, 1.5, 2), normal=(1, 0, 0), width=3, height=4, up=(0, 0, 1), radiance=2.0)
+    for place, normal in (((2, 1, 1), (-1, 0, 0)), ((0.5, 0, 3), (0, 1, 0)), ((1, 2, 4), (0, 0, -1))):
+        walk = irradiance(room, position=place, samples=20_000, rng=seed)
+        exact = face.irradiance_at(np.array(place, float), np.array(normal, float)).value
+        assert walk.method == "random walk"
+        assert z_test(walk, exact) > LEVEL
 
 
 def test_a_panel_in_the_ceiling(seed):

@@ -273,7 +273,7 @@ def test_an_anisotropic_body_is_asked_pixel_by_pixel(seed):
         (ParameterError, "bounces", {"bounces": "all"}),
         (ParameterError, "bounces", {"scene": "box", "bounces": "two"}),
         (ParameterError, "walls of its own", {"scene": "box", "f": Lambert()}),
-        (ParameterError, "sphere", {"scene": "plane", "light": "isothermal"}),
+        (UnknownNameError, "light of scene 'plane'", {"scene": "plane", "light": "isothermal"}),
         (ParameterError, "rtol", {"rtol": 2.0}),
     ],
     ids=str,

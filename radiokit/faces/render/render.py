@@ -55,7 +55,7 @@ def render(
     f : BSDF or callable, optional
         The material of the sphere or the plane; Lambert of reflectance 0.8 when not given.
     light : str, optional
-        ``furnace`` (radiance 1 from everywhere), ``isothermal`` (the same, and the surface emits what it
+        ``furnace`` (radiance 1 from everywhere), ``isothermal`` (the same, and the sphere emits what it
         absorbs, as in a furnace of one temperature: see ``furnace_image``), ``lamp`` (a point light) or
         ``sky`` (overcast, with a sun); ``panel`` in the box.
     size : int
@@ -97,11 +97,9 @@ def render(
         raise ParameterError("bounces", bounces, "'one' or 'all'")
     if bounces == "all" and setting.room is None:
         raise ParameterError("bounces", bounces, "'one', or the scene a box")
-    if setting.room is not None and bounces == "all" and method not in METHODS:
+    if bounces == "all" and method not in METHODS:
         raise UnknownNameError("method", method, METHODS)
     if setting.light == "isothermal":
-        if scene != "sphere":
-            raise ParameterError("light", light, "another one, or the scene a sphere")
         own = "mc-bsdf" if method == "auto" else method
         return furnace_image(
             setting.materials[0],
@@ -155,18 +153,14 @@ def _row(setting: Setting, bounces: Bounces, how: dict[str, Any], seed: int, row
             seen = setting.seen(rays[column], np.array(setting.camera.position))
             found.append(rounding(np.full(3, seen)))
             continue
-        material, generator = (
-            setting.materials[hits.material[row, column]],
-            block_generator(seed, int(numbers[k])),
-        )
         found.append(
             shade(
-                material,
+                setting.materials[hits.material[row, column]],
                 setting.lights,
                 towards[k],
                 normal=normal[k],
                 position=place[k],
-                rng=generator,
+                rng=block_generator(seed, int(numbers[k])),
                 **how,
             )
         )

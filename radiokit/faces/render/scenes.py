@@ -128,8 +128,11 @@ LIGHTS: dict[str, tuple[Emitter, ...]] = {
 }
 """The lights by name; with ``isothermal`` the surface also emits what it absorbs."""
 
-_OPEN = ("furnace", "isothermal", "lamp", "sky")
-SCENES: dict[str, tuple[str, ...]] = {"sphere": _OPEN, "plane": _OPEN, "box": ("panel",)}
+SCENES: dict[str, tuple[str, ...]] = {
+    "sphere": ("furnace", "isothermal", "lamp", "sky"),
+    "plane": ("furnace", "lamp", "sky"),
+    "box": ("panel",),
+}
 """The scenes by name, and the lights that each may have, the default first."""
 
 _CAMERAS: dict[str, dict[str, Any]] = {

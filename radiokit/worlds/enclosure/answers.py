@@ -66,9 +66,9 @@ def radiance(
     direction : array_like, shape (3,) or (N, 3)
         Unit vector from the wall into the room; one for all points, or one for each.
     method : {"auto", "closed form", "random walk"}
-        The closed form serves diffuse spheres with isotropic point lights, and rooms in which each wall
-        emits the same multiple of what it absorbs (1 − ρ, the same for all directions); ``auto`` takes it
-        where it applies.
+        The closed form serves diffuse spheres with isotropic point lights, or any point lights if there are
+        no caps, and rooms in which each wall emits the same multiple of what it absorbs (1 − ρ, the same for
+        all directions); ``auto`` takes it where it applies.
     samples : int, optional
         Paths from each point; with ``rtol`` or ``seconds`` the most that are followed. By default 2¹⁶, with
         ``rtol`` at most 2²⁴, and with ``seconds`` as many as there is time for. An estimate's ``evaluations``

@@ -113,7 +113,7 @@ def _albedo(f: BSDF) -> Any:
         if any(part is None for part in parts):
             return None
         return sum(np.asarray(w) * part for w, part in zip(f.weights, parts, strict=True))
-    return 1.0 if (claims := f.claims) is not None and claims.lossless else None
+    return None  # also where a model claims to be lossless: that is true to a tolerance only
 
 
 def _worn(wall: Wall) -> float:
@@ -161,7 +161,7 @@ def _balance(room: Sphere) -> Light | None:
     if any(each is None for each in rho):
         return None
     rho = [np.asarray(each) for each in rho]
-    if not all(isinstance(light, Point) for light in room.lights):
+    if not all(isinstance(light, Point) or len(rho) == 1 for light in room.lights):
         return None
     shares = room.shares
     area = 4.0 * math.pi * room.radius * room.radius
@@ -188,6 +188,9 @@ def _balance(room: Sphere) -> Light | None:
 
 def _direct(room: Sphere, light: Any) -> tuple[FloatArray, float]:
     """Return the flux [W] that each part receives from a lamp itself, and a bound of its error."""
+    if not isinstance(light, Point):  # the sphere is of one piece, which receives all
+        whole = light.flux()
+        return np.array([float(whole.value)]), float(whole.error)
     angles, error = room.solid_angles(np.array(light.position))
     flux = light.intensity * angles
     return flux, light.intensity * (error + 16 * _EPS * math.pi)
