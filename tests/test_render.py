@@ -334,6 +334,16 @@ def test_the_command_judges_an_isothermal_furnace(capsys, tmp_path):
     assert "gains energy" in out
 
 
+def test_all_models_on_one_sheet(capsys, tmp_path, monkeypatch):
+    monkeypatch.setattr("radiokit.contracts.bsdf.list_bsdfs", lambda: ["cook_torrance", "lambert"])
+    words = ("sphere", "--model", "all", "--light", "isothermal", "--size", 4, "--workers", 1)
+    code, out, _ = run(capsys, *words, "--samples", 512, "--png", tmp_path / "s.png")
+    assert code == 0  # it claims not to conserve energy
+    assert "lambert: holds" in out
+    assert "cook_torrance: violated" in out
+    assert (tmp_path / "s.png").exists()
+
+
 def test_a_function_in_a_file_is_rendered(capsys, tmp_path):
     file = tmp_path / "mine.py"
     file.write_text("def half(wi, wo):\n    return 0.5 / 3.141592653589793\n")
@@ -363,8 +373,10 @@ def test_a_function_in_a_file_is_rendered(capsys, tmp_path):
         ("model = None", ("sphere", "--alpha", 0.3)),
         ("unknown model", ("sphere", "--model", "gxg")),
         ("isothermal", ("sphere", "--model", "all")),
+        ("folder that exists", ("sphere", "--png", "nowhere/x.png")),
+        ("ends in .exr", ("sphere", "--exr", "x.png")),
         ("unexpected argument", ("sphere", "--model", "ggx", "alpha")),
-        ("given: all models", ("sphere", "--model", "all", "--light", "isothermal", "--exr", "x.exr")),
+        ("the only file", ("sphere", "--model", "all", "--light", "isothermal", "--exr", "x.exr")),
     ],
     ids=str,
 )

@@ -9,10 +9,10 @@ import typer
 
 from radiokit.faces.console import progress_bar, show_json, write
 from radiokit.facts.errors import ParameterError
+from radiokit.facts.report import EXIT_CODES
+from radiokit.facts.verdict import Outcome
 
 __all__ = ["render"]
-
-INCONCLUSIVE = 3
 
 
 def render(
@@ -44,6 +44,7 @@ def render(
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Render a small picture, each pixel with its error; a model's parameters go as --NAME VALUE."""
+    from radiokit.faces.render.picture import check_file
     from radiokit.faces.render.render import render as picture_of
     from radiokit.faces.targets import load_target, parse_parameters
     from radiokit.faces.workers import available_workers, open_executor
@@ -51,45 +52,53 @@ def render(
     parameters = parse_parameters(context.args)
     if model is None and parameters:
         raise ParameterError("model", model, f"given, since {', '.join(parameters)} is a parameter of one")
-    files = [path for path in (png, exr, error_png, error_exr) if path is not None]
-    if not files:
-        png = Path("render.png")
+    files = {"png": png, "exr": exr, "error-png": error_png, "error-exr": error_exr}
+    if not any(files.values()):
+        files["png"] = Path("render.png")
+    for option, file in files.items():
+        if file is not None:
+            check_file(file, f".{option[-3:]}")
     count = workers
     if model is not None and ":" in model:  # other processes do not know a function in a file
         if scheduler is not None or workers not in (None, 1):
             raise ParameterError("model", model, "a model's name, to be rendered by other processes")
     elif workers is None and scheduler is None:
         count = available_workers()
-    how: dict[str, Any] = {
-        "light": light,
-        "size": size,
-        "method": method,
-        "bounces": bounces,
-        "rtol": rtol,
-        "samples": samples,
-        "rng": seed,
-    }
-    with open_executor(count, scheduler) as executor, progress_bar("rendering", not json) as progress:
-        if model == "all":
-            code = _sheet(scene, light, parameters, how, executor, progress, png, json)
-        else:
-            f = None if model is None else load_target(model, parameters)
-            picture = picture_of(scene, f, executor=executor, progress=progress, **how)
+    how: dict[str, Any] = {"size": size, "method": method, "rtol": rtol, "samples": samples, "rng": seed}
     if model == "all":
-        _leave(code)
-        return
-    saved = [str(picture.save(png, white=white))] if png is not None else []
-    saved += [str(picture.save(exr))] if exr is not None else []
-    saved += [str(picture.save_error(path)) for path in (error_png, error_exr) if path is not None]
-    verdict = picture.verdict() if hasattr(picture, "verdict") else None
+        if scene != "sphere" or light != "isothermal" or parameters:
+            raise ParameterError("model", "all", "one model, unless it is a sphere with --light isothermal")
+        if list(filter(None, files.values())) != [files["png"]]:
+            raise ParameterError("png", png, "the only file, if all models are to be drawn on it")
+    f = None if model in (None, "all") else load_target(model, parameters)
+    with open_executor(count, scheduler) as executor, progress_bar("rendering", not json) as progress:
+        how |= {"executor": executor, "progress": progress}
+        if model == "all":
+            code = _sheet(files["png"], how, json)
+        else:
+            picture = picture_of(scene, f, light=light, bounces=bounces, **how)  # type: ignore[arg-type]
+            code = _show(picture, files, white, json)
+    if code:
+        raise typer.Exit(code)
+
+
+def _show(picture: Any, files: dict[str, Path | None], white: float, json: bool) -> int:
+    """Write the files and what there is to say of them; return the exit code."""
+    from radiokit.faces.render.furnace import FurnaceImage
+
+    saved = []
+    for option, file in files.items():
+        if file is not None:
+            errors = option.startswith("error")
+            saved.append(str(picture.save_error(file) if errors else picture.save(file, white=white)))
+    verdict = picture.verdict() if isinstance(picture, FurnaceImage) else None
     if json:
         show_json(picture.to_json() | {"files": saved})
     else:
         _describe(picture, verdict, saved)
-    unconverged = not picture.converged.all()
     if verdict is not None:
-        _leave({"holds": 0, "violated": 1, "inconclusive": INCONCLUSIVE}[str(verdict.outcome)])
-    _leave(INCONCLUSIVE if unconverged else 0)
+        return EXIT_CODES[verdict.outcome]
+    return 0 if picture.converged.all() else EXIT_CODES[Outcome.INCONCLUSIVE]
 
 
 def _describe(picture: Any, verdict: Any, saved: list[str]) -> None:
@@ -110,32 +119,17 @@ def _describe(picture: Any, verdict: Any, saved: list[str]) -> None:
         write(name)
 
 
-def _sheet(
-    scene: str,
-    light: str | None,
-    parameters: dict[str, Any],
-    how: dict[str, Any],
-    executor: Any,
-    progress: Any,
-    png: Path | None,
-    json: bool,
-) -> int:
-    """Draw all models in the isothermal furnace; the code is 1 only for what no claim explains."""
+def _sheet(png: Path | None, how: dict[str, Any], json: bool) -> int:
+    """Draw all models in the isothermal furnace; what a model claims to break is no fault."""
     from radiokit.contracts.bsdf import bsdf, list_bsdfs
     from radiokit.faces.render.furnace import furnace_image
     from radiokit.faces.render.pixels import followed
     from radiokit.faces.render.sheet import draw_sheet
 
-    if scene != "sphere" or light != "isothermal":
-        raise ParameterError("model", "all", "one model, unless it is a sphere with --light isothermal")
-    if parameters:
-        raise ParameterError("model", "all", "one model, if it is given parameters")
-    if png is None:
-        raise ParameterError("png", None, "given: all models are drawn on one PNG")
-    own = "mc-bsdf" if how["method"] == "auto" else how["method"]
-    options = {name: how[name] for name in ("size", "samples", "rtol", "rng")}
-    names = list_bsdfs()
-    drawn = (furnace_image(bsdf(name), method=own, executor=executor, **options) for name in names)
+    assert png is not None
+    progress, names = how.pop("progress"), list_bsdfs()
+    how["method"] = "mc-bsdf" if how["method"] == "auto" else how["method"]
+    drawn = (furnace_image(bsdf(name), **how) for name in names)
     pictures = list(zip(names, followed(drawn, len(names), progress), strict=True))
     saved = draw_sheet(pictures, png)
     verdicts = {name: picture.verdict() for name, picture in pictures}
@@ -147,14 +141,9 @@ def _sheet(
         for name, each in verdicts.items():
             write(f"{name}: {each.outcome}. {each.message}")
         write(str(saved))
+    codes = [0]
     for name, each in verdicts.items():
         claims = bsdf(name).claims
-        excused = claims is not None and (not claims.conserves or claims.reciprocity == "no")
-        if not each.ok and not excused:
-            return 1 if str(each.outcome) == "violated" else INCONCLUSIVE
-    return 0
-
-
-def _leave(code: int) -> None:
-    if code:
-        raise typer.Exit(code)
+        if claims is None or (claims.conserves and claims.reciprocity != "no"):
+            codes.append(EXIT_CODES[each.outcome])
+    return 1 if 1 in codes else max(codes)

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from radiokit.facts.errors import MissingExtraError, ParameterError, RadiokitError
 from radiokit.facts.jsonable import jsonable
 
-__all__ = ["Image", "srgb"]
+__all__ = ["Image", "check_file", "srgb"]
 
 FloatArray = npt.NDArray[np.float64]
 File = TypeVar("File", Path, BytesIO)
@@ -128,6 +128,33 @@ class Image:
         return values if values.ndim > 2 else np.repeat(values[:, :, None], 3, axis=2)
 
 
+def check_file(path: str | Path, suffix: str) -> None:
+    """Raise before the work begins if a picture cannot be written there.
+
+    Raises
+    ------
+    ParameterError
+        When the name does not end in ``suffix``, or there is no such folder.
+    MissingExtraError
+        When OpenEXR is needed and not installed.
+    """
+    file = Path(path)
+    if file.suffix != suffix:
+        raise ParameterError("path", str(path), f"a name that ends in {suffix}")
+    if not file.absolute().parent.is_dir():
+        raise ParameterError("path", str(path), "in a folder that exists")
+    if suffix == ".exr":
+        _openexr()
+
+
+def _openexr() -> Any:
+    try:
+        import OpenEXR
+    except ImportError:
+        raise MissingExtraError("writing an OpenEXR file", "OpenEXR", "images") from None
+    return OpenEXR
+
+
 def srgb(linear: npt.ArrayLike) -> Any:
     """Return sRGB's encoding of linear light in [0, 1]; what is outside is moved to its ends.
 
@@ -154,10 +181,7 @@ def _write_png(file: File, rgb: FloatArray, white: float) -> File:
 
 
 def _write_exr(file: Path, layers: dict[str, FloatArray]) -> Path:
-    try:
-        import OpenEXR
-    except ImportError:
-        raise MissingExtraError("writing an OpenEXR file", "OpenEXR", "images") from None
+    OpenEXR = _openexr()
     channels: dict[str, npt.NDArray[np.float32]] = {}
     for layer, values in layers.items():
         planes = values[:, :, None] if values.ndim == 2 else values
