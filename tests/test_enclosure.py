@@ -400,6 +400,15 @@ def test_a_panel_in_the_ceiling(seed):
     assert abs(total - panel.flux().value) < 4.5 * spread
     shining = radiance(black, position=(0.1, 0.1, 1), direction=(0, 0, -1), samples=10, rng=seed)
     assert (shining.value, shining.error < 1e-13) == (12.0, True)
+    mirror = Box(
+        walls=[*[Wall()] * 4, Wall(f=0.25 * Mirror() + 0.25 * Lambert()), Wall()],
+        low=(-1, -1, -1),
+        lights=panel,
+    )
+    ask = {"position": (0.1, 0.1, -1), "samples": 4000, "rng": seed}
+    found = radiance(mirror, direction=(0, 0, 1), **ask)  # the panel in the mirror, and on the paint
+    lit = panel.irradiance_at(np.array(ask["position"]), np.array([0.0, 0.0, 1.0])).value
+    assert z_test(found, 0.25 * 12.0 + 0.25 * lit / math.pi) > LEVEL
     for wrong in ({"normal": (0, 0, 1)}, {"center": (0.9, 0, 1)}, {"center": (0, 0, 0.5)}):
         with pytest.raises(ParameterError, match="in a face of the box"):
             Box(walls=grey(0.5), low=(-1, -1, -1), lights=dataclasses.replace(panel, **wrong))

@@ -77,7 +77,7 @@ class Wall:
 
 
 class Room(ABC):
-    """A closed room: parts of its wall by number, and point lights inside."""
+    """A closed, convex room: the parts of its wall by their numbers, and its lamps."""
 
     walls: Any
     lights: tuple[Lamp, ...]
@@ -137,7 +137,7 @@ class Room(ABC):
                     raise ParameterError("lights", light, "in a face of the box, shining inwards")
             elif not self.contains(np.array(light.position)):
                 raise ParameterError("lights", light, "inside the room")
-        assert self.wavelengths is None or self.wavelengths
+        _ = self.wavelengths  # the walls agree on their number
 
 
 def check_wall(name: str, wall: Any) -> None:

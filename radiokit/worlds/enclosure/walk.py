@@ -11,6 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from radiokit.contracts.bsdf import BSDF
+from radiokit.contracts.combining import in_delta
+from radiokit.emitters.rectangle import Rectangle
 from radiokit.facts.directions import dot, frame, to_local, to_world
 from radiokit.facts.errors import RadiokitError
 from radiokit.worlds.enclosure.lamps import arriving, shown
@@ -41,8 +43,8 @@ def gather(
         World coordinates; the directions point into the room.
     generator : numpy.random.Generator
     panels : bool
-        Whether the first points show the panels that they lie on; later ones do not, for there each point
-        of a wall is lit by the panels, once.
+        Whether the first points show the panels that they lie on. Later points do only in delta lobes:
+        through all else a panel is looked for from where it shines to, and must not be counted twice.
 
     Returns
     -------
@@ -56,10 +58,10 @@ def gather(
     """
     n = len(position)
     total = np.zeros((n, room.wavelengths or 1))
-    if panels:
-        total += shown(room.lights, position)[:, None]
     throughput = np.ones_like(total)
     path = np.arange(n)
+    sees = np.full(n, panels)
+    has_panels = any(isinstance(light, Rectangle) for light in room.lights)
     bounces = 0
     while len(path):
         bounces += len(path)
@@ -73,6 +75,9 @@ def gather(
         axes = frame(room.normals(position, part))
         wo = to_local(axes, direction)
         lamps = arriving(room.lights, position, generator)
+        if has_panels:
+            total[path] += throughput * np.where(sees, shown(room.lights, position), 0.0)[:, None]
+        sees = np.zeros(len(path), dtype=bool)
         alive = np.zeros(len(path), dtype=bool)
         onward = np.empty_like(wo)
         for number, wall in enumerate(room.parts):
@@ -92,7 +97,9 @@ def gather(
             throughput[stay] = carried[keep] / survival[keep][:, None]
             onward[stay] = wi[keep]
             alive[stay] = True
-        path, throughput = path[alive], throughput[alive]
+            if has_panels:
+                sees[stay] = in_delta(wall.f, wi[keep], wo[stay])
+        path, throughput, sees = path[alive], throughput[alive], sees[alive]
         w = to_world(axes[alive], onward[alive])
         position, direction = room.follow(position[alive], w), -w
     return total
