@@ -19,7 +19,7 @@ from radiokit.faces.render.camera import Camera
 from radiokit.faces.render.furnace import furnace_image
 from radiokit.faces.render.picture import Image, srgb
 from radiokit.faces.render.render import render
-from radiokit.faces.render.scenes import LIGHTS, make_setting
+from radiokit.faces.render.scenes import SCENES, make_setting
 from radiokit.facts.errors import MissingExtraError, ParameterError, RadiokitError, UnknownNameError
 from radiokit.measure.statistics import sidak
 
@@ -49,7 +49,7 @@ def test_a_diffuse_plane_under_a_lamp():
     """ρI cosθ/(πd²), pixel by pixel, and its mirror image."""
     picture = render("plane", Lambert(reflectance=0.8), light="lamp", size=9)
     setting = make_setting("plane", light="lamp", size=9)
-    (lamp,) = LIGHTS["lamp"]
+    (lamp,) = SCENES["plane"]["lamp"]
     for row, column in np.argwhere(picture.surface):
         ray = setting.camera.rays[row, column]
         point = np.array(setting.camera.position) - ray * setting.camera.position[2] / ray[2]
@@ -69,7 +69,7 @@ def test_every_pixel_is_what_shade_says():
     ray = Camera(position=(0, -6, 0), field=0.36, width=5, height=5).rays[row, column]
     b = 6 * ray[1]
     point = np.array([0, -6, 0]) + (b - math.sqrt(b * b - 35)) * ray
-    found = rk.shade(f, LIGHTS["sky"], -ray, normal=point, position=point, rtol=1e-4)
+    found = rk.shade(f, SCENES["sphere"]["sky"], -ray, normal=point, position=point, rtol=1e-4)
     assert picture.values[row, column] == pytest.approx(found.value, rel=1e-6)
 
 
@@ -82,7 +82,7 @@ def test_the_box_under_its_panel():
     assert left[0] > 3 * left[1]  # red
     assert right[1] > 2 * right[0]  # green
     assert left[0] / 0.63 == pytest.approx(right[1] / 0.45, rel=1e-9)  # the panel lights both alike
-    panel = LIGHTS["panel"][0]
+    (panel,) = SCENES["box"]["panel"]
     setting = make_setting("box", size=8)
     hits = setting.trace(setting.camera)
     arriving = rk.irradiance(panel, normal=hits.normal[4, 4], position=hits.position[4, 4])

@@ -25,7 +25,7 @@ from radiokit.facts.errors import ParameterError, UnknownNameError
 from radiokit.measure.rays import through_box, to_plane, to_sphere
 from radiokit.worlds.enclosure import Box, Wall
 
-__all__ = ["LIGHTS", "SCENES", "Hits", "Setting", "make_setting"]
+__all__ = ["SCENES", "Hits", "Setting", "make_setting"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -119,21 +119,23 @@ def _box(camera: Camera) -> Hits:
     return Hits(*found, (met & panel).reshape(shape))
 
 
-LIGHTS: dict[str, tuple[Emitter, ...]] = {
-    "furnace": (Constant(radiance=1.0),),
-    "isothermal": (Constant(radiance=1.0),),
-    "lamp": (Point(position=(-3.0, -4.0, 4.0), intensity=100.0),),
-    "sky": (SkyOvercast(radiance=0.6), Directional(direction=(-1.0, -1.5, 1.2), irradiance=2.0)),
-    "panel": (PANEL,),
+_FURNACE: tuple[Emitter, ...] = (Constant(radiance=1.0),)
+_SKY = SkyOvercast(radiance=0.6)
+SCENES: dict[str, dict[str, tuple[Emitter, ...]]] = {
+    "sphere": {
+        "furnace": _FURNACE,
+        "isothermal": _FURNACE,
+        "lamp": (Point(position=(-3.0, -4.0, 4.0), intensity=100.0),),
+        "sky": (_SKY, Directional(direction=(-1.0, -1.5, 1.2), irradiance=2.0)),
+    },
+    "plane": {
+        "furnace": _FURNACE,
+        "lamp": (Point(position=(0.5, 2.0, 1.5), intensity=8.0),),
+        "sky": (_SKY, Directional(direction=(0.0, 2.0, 1.0), irradiance=0.4)),
+    },
+    "box": {"panel": (PANEL,)},
 }
-"""The lights by name; with ``isothermal`` the surface also emits what it absorbs."""
-
-SCENES: dict[str, tuple[str, ...]] = {
-    "sphere": ("furnace", "isothermal", "lamp", "sky"),
-    "plane": ("furnace", "lamp", "sky"),
-    "box": ("panel",),
-}
-"""The scenes by name, and the lights that each may have, the default first."""
+"""The lights of each scene, the default first; with ``isothermal`` the body also emits what it absorbs."""
 
 _CAMERAS: dict[str, dict[str, Any]] = {
     "sphere": {"position": (0.0, -6.0, 0.0), "field": 0.36},
@@ -166,7 +168,7 @@ def make_setting(scene: str, f: Any = None, *, light: str | None = None, size: i
     """
     if scene not in SCENES:
         raise UnknownNameError("scene", scene, SCENES)
-    light = SCENES[scene][0] if light is None else light
+    light = next(iter(SCENES[scene])) if light is None else light
     if light not in SCENES[scene]:
         raise UnknownNameError(f"light of scene {scene!r}", light, SCENES[scene])
     if type(size) is not int or size < 1:
@@ -178,4 +180,4 @@ def make_setting(scene: str, f: Any = None, *, light: str | None = None, size: i
     else:
         materials = (Lambert(reflectance=0.8) if f is None else as_bsdf(f),)
     camera = Camera(width=size, height=size, **_CAMERAS[scene])
-    return Setting(scene, light, camera, materials, LIGHTS[light], _TRACES[scene])
+    return Setting(scene, light, camera, materials, SCENES[scene][light], _TRACES[scene])
