@@ -73,14 +73,15 @@ class FurnaceImage(Image):
     def verdict(self, level: float = 1e-6) -> Verdict:
         """Judge whether the body vanishes into its background of radiance 1.
 
-        Bounds must hold; statistical pixels are put to a z-test, whose level is shared by all directions.
+        Bounds must hold; statistical pixels are put to a z-test, whose level is shared by all directions
+        and wavelengths.
         A negative emissivity is a violation by itself: no body can make up for light that it gains.
 
         >>> from radiokit.bsdfs.lambert import Lambert
         >>> furnace_image(Lambert(reflectance=0.5), size=6).verdict().outcome.value
         'holds'
         """
-        share = sidak(level, len(self.balances))
+        share = sidak(level, sum(np.size(each.total.value) for each in self.balances))
         worst: tuple[float, _Balance] | None = None
         doubt, lowest = "", 1.0
         for each in self.balances:
