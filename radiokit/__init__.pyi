@@ -21,6 +21,8 @@ from .contracts.scalar import ScalarBSDF as ScalarBSDF
 from .faces.modeltable import models_table as models_table
 from .faces.plots.lobe import save_lobe as save_lobe
 from .faces.plots.lobe import show_lobe as show_lobe
+from .faces.render.furnace import furnace_image as furnace_image
+from .faces.render.render import render as render
 from .facts import directions as directions
 from .facts import errors as errors
 from .facts.estimate import Estimate as Estimate
@@ -38,7 +40,9 @@ from .measure.kernels import kernel as kernel
 from .measure.kernels import select as select
 from .measure.twin import Twin as Twin
 from .physics import fresnel as fresnel
+from .physics import integrating_sphere as integrating_sphere
 from .physics import view_factor as view_factor
+from .worlds import enclosure as enclosure
 from .worlds.cases.catalogue import case as case
 from .worlds.cases.catalogue import list_cases as list_cases
 from .worlds.enclosure import enclosure_radiance as enclosure_radiance
