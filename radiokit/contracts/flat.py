@@ -54,8 +54,8 @@ class FlatEmitter(Emitter):
 
     @cached_property
     def _normal(self) -> FloatArray:
-        size = float(np.abs(self.corners).max())  # so that no square overflows
-        direction = area_vector(self.corners / size)
+        sides = self.corners - self.corners[0]
+        direction = area_vector(sides / np.abs(sides).max())  # so that no square overflows, or underflows
         normal: FloatArray = direction / np.sqrt(dot(direction, direction))
         return normal
 
