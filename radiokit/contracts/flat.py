@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any, ClassVar
 
@@ -48,13 +48,28 @@ class FlatEmitter(Emitter):
     def corners(self) -> FloatArray:
         """The corners (N, 3) [m]."""
 
+    @property
+    def anchor(self) -> FloatArray:
+        """The point (3,) [m] from which ``offsets`` lead to the corners, so that small lights keep their shape."""
+        return np.zeros(3)
+
+    @property
+    def offsets(self) -> FloatArray:
+        """The corners (N, 3) [m] as seen from ``anchor``."""
+        return self.corners
+
+    @property
+    def blur(self) -> float:
+        """How far ``offsets`` may be from what the parameters say [m]: 0 where they are parameters."""
+        return 0.0
+
     @cached_property
-    def _triangles(self) -> FloatArray:
-        return self.corners[triangulate(self.corners)]
+    def _indices(self) -> npt.NDArray[np.intp]:
+        return triangulate(self.offsets)
 
     @cached_property
     def _normal(self) -> FloatArray:
-        sides = self.corners - self.corners[0]
+        sides = self.offsets - self.offsets[0]
         direction = area_vector(sides / np.abs(sides).max())  # so that no square overflows, or underflows
         normal: FloatArray = direction / np.sqrt(dot(direction, direction))
         return normal
@@ -62,7 +77,7 @@ class FlatEmitter(Emitter):
     @property
     def area(self) -> float:
         """The area [m²]."""
-        return math.hypot(*area_vector(self.corners))
+        return math.hypot(*area_vector(self.offsets))
 
     def flux(self) -> Estimate:
         """Return the flux that leaves the front, Φ = πLA [W]."""
@@ -99,16 +114,17 @@ class FlatEmitter(Emitter):
         found: list[Emitter] = []
         if _view(self, _key(position)).solid_angle == 0.0:
             return found
-        for triangle in self._triangles:
-            part = np.array(polygon.above((triangle - position).tolist(), normal.tolist()))
+        corners, origin = self._placed(position)
+        for triangle in corners[self._indices]:
+            part = np.array(polygon.above((triangle - origin).tolist(), normal.tolist()))
             for k in range(1, len(part) - 1):
                 warp = UniformSphericalTriangle(vertices=part[[0, k, k + 1]])
                 size = warp.solid_angle
                 # A direction is known to an eps, and so is a cosine, however small it is.
                 middle = warp.sample(np.array([[0.5, 0.5]]))[0]
                 precision = 8 * _EPS / max(float(middle @ normal), _EPS)
-                if len(part) == 3 and np.array_equal(part, triangle - position):
-                    size = float(polygon.solid_angle(triangle, position).value)  # with all its digits
+                if len(part) == 3 and np.array_equal(part, triangle - origin):
+                    size = float(polygon.solid_angle(triangle, origin).value)  # with all its digits
                 elif size > 0.0:  # where the horizon cuts is rounded
                     precision += 8 * _EPS * warp.perimeter / size
                 if size > 0.0:
@@ -123,8 +139,10 @@ class FlatEmitter(Emitter):
         ParameterError
             When ``position`` is on the light.
         """
-        self._check_off(position)
-        return polygon.solid_angle(self.corners, np.asarray(position, dtype=float))
+        corners, origin = self._placed(position)
+        self._check_off(corners, origin, position)
+        found = polygon.solid_angle(corners, origin)
+        return replace(found, error=found.error + self._blurred(corners - origin, found.value))
 
     def irradiance_at(self, position: FloatArray, normal: FloatArray) -> Estimate:
         """Return the irradiance on a receiver of any tilt, by Lambert's formula above its horizon [W m⁻²].
@@ -134,18 +152,44 @@ class FlatEmitter(Emitter):
         ParameterError
             When ``position`` is on the light.
         """
-        self._check_off(position)
-        found = polygon.irradiance(self.corners, np.asarray(position, dtype=float), np.asarray(normal))
+        corners, origin = self._placed(position)
+        self._check_off(corners, origin, position)
+        found = polygon.irradiance(corners, origin, np.asarray(normal))
         value = found.value * self.radiance
-        error = found.error * self.radiance + (float(np.spacing(value)) if value else 0.0)
+        error = (found.error + self._blurred(corners - origin, found.value)) * self.radiance
+        error += float(np.spacing(value)) if value else 0.0
         return Estimate(value, error, "rounding", method="closed form")
 
-    def _check_off(self, position: FloatArray) -> None:
-        offsets = self.corners - position
-        scale = float(np.abs(self.corners).max() + np.abs(position).max())
+    def _placed(self, position: Any) -> tuple[FloatArray, FloatArray]:
+        """Return the corners (N, 3) and the receiver (3,) as seen from the anchor; nothing of either is lost.
+
+        What the rounding of the receiver's place takes away is given to the corners.
+        """
+        point, anchor = np.asarray(position, dtype=float), self.anchor
+        origin = point - anchor
+        back = origin - point
+        lost = (point - (origin - back)) - (anchor + back)
+        return self.offsets - lost, origin
+
+    def _blurred(self, corners: FloatArray, value: float) -> float:
+        """Return how far a solid angle may be off for corners that are off by ``blur``: ≤ blur ∮ ds/r²."""
+        if not self.blur or (value == 0.0 and abs(float(corners[0] @ self._normal)) > 4 * self.blur):
+            return 0.0
+        total = 0.0
+        for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+            along = b - a
+            length = math.hypot(*along)
+            share = min(1.0, max(0.0, -float(a @ along) / length / length))
+            nearest = max(math.hypot(*(a + share * along)), self.blur)
+            total += min(length / nearest, math.pi) / nearest
+        return self.blur * total
+
+    def _check_off(self, corners: FloatArray, origin: FloatArray, position: FloatArray) -> None:
+        offsets = corners - origin
+        scale = float(np.abs(corners).max() + np.abs(origin).max())
         if np.min(np.abs(offsets @ self._normal)) > _SLACK * scale:
             return
-        for a, b, c in self._triangles - position:
+        for a, b, c in offsets[self._indices]:
             sides = [_height(p, q, self._normal) for p, q in ((a, b), (b, c), (c, a))]
             if all(side >= -_SLACK * scale for side in sides):
                 place = tuple(map(float, position))
@@ -165,12 +209,13 @@ class _View:
     def __init__(self, light: FlatEmitter, position: FloatArray) -> None:
         self.solid_angle = float(light.solid_angle(position).value)
         self._by_area = light.sampling == "area"
-        self._offset = light.corners[0] - position
+        corners, origin = light._placed(position)
+        self._offset = corners[0] - origin
         self._normal = light._normal
         self._area = light.area
-        triangles = light._triangles - position
+        triangles = corners[light._indices] - origin
         following = np.roll(triangles, -1, axis=1)
-        edges = np.roll(light._triangles, -1, axis=1) - light._triangles
+        edges = np.roll(light.offsets[light._indices], -1, axis=1) - light.offsets[light._indices]
         # Near corners and far ones alike give planes whose normals are of length 1, or 0 for a blind edge.
         size = np.sqrt(dot(triangles, triangles)) * np.sqrt(dot(edges, edges))
         self._planes = np.cross(triangles, edges) / size[..., None]
