@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-__all__ = ["b3", "b4", "b13", "b13_aside", "c11", "c14", "c41", "disk_ball", "ball_disk", "tilted_ball"]
+__all__ = ["b3", "b4", "b13", "b13_aside", "ball_disk", "c11", "c14", "c41", "disk_ball", "tilted_ball"]
 
 
 def c41(radius1: Any, radius2: Any, distance: Any) -> Any:

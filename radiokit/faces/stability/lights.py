@@ -296,7 +296,8 @@ def _condition(row: LightRow, numbers: tuple[float, ...], digits: int) -> float:
         for k in range(len(exact) - row.whole):
             if exact[k]:
                 up, down = (
-                    row.exact(*exact[:k], exact[k] * factor, *exact[k + 1 :]) for factor in (1 + step, 1 - step)
+                    row.exact(*exact[:k], exact[k] * factor, *exact[k + 1 :])
+                    for factor in (1 + step, 1 - step)
                 )
                 total += abs(up - down) / (2 * step)
         return float(total / abs(value))

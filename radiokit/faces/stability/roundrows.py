@@ -78,9 +78,7 @@ def rows() -> tuple[LightRow, ...]:
                 (0, 0, 0),
                 (x, 0, z),
             ),
-            exact=lambda h, r, n, radiance, x, z: (
-                radiance * truth.cosine_disk(h, r, n, z / _hypot(x, z))
-            ),
+            exact=lambda h, r, n, radiance, x, z: radiance * truth.cosine_disk(h, r, n, z / _hypot(x, z)),
             cases=_cosine_cases(),
         ),
         LightRow(
@@ -116,7 +114,9 @@ def _disk(x: tuple[float, ...]) -> Emitter:
 
 
 def _pairs() -> tuple[Case, ...]:
-    return tuple((f"R {r:g}, L {power:g}", (r, power)) for r in (1e-90, 0.3, 7e80) for power in (0.7, 1e-9, 3e12))
+    return tuple(
+        (f"R {r:g}, L {power:g}", (r, power)) for r in (1e-90, 0.3, 7e80) for power in (0.7, 1e-9, 3e12)
+    )
 
 
 def _cone_textbook(cx: float, cy: float, cz: float, r: float, px: float, py: float, pz: float) -> float:
@@ -173,7 +173,10 @@ def _sphere_cases() -> tuple[Case, ...]:
     ]
     rng = generator("sphere")
     for k in range(_RANDOM):
-        radius, position = float(10 ** rng.uniform(-6, 6)), 10 ** rng.uniform(-3, 3) * unit(rng.normal(size=3))
+        radius, position = (
+            float(10 ** rng.uniform(-6, 6)),
+            10 ** rng.uniform(-3, 3) * unit(rng.normal(size=3)),
+        )
         distance = radius * (1 + 10 ** rng.uniform(-12, 6))
         normal, aside = unit(rng.normal(size=(2, 3)))
         lift = min(radius, distance) * rng.uniform(-1, 1)
@@ -226,11 +229,16 @@ def _disk_cases() -> tuple[Case, ...]:
     ]
     rng = generator("disk")
     for k in range(_RANDOM):
-        radius, position = float(10 ** rng.uniform(-4, 4)), 10 ** rng.uniform(-2, 2) * unit(rng.normal(size=3))
+        radius, position = (
+            float(10 ** rng.uniform(-4, 4)),
+            10 ** rng.uniform(-2, 2) * unit(rng.normal(size=3)),
+        )
         m, n = unit(rng.normal(size=(2, 3)))
         towards = unit(rng.normal(size=3)) * radius * 10 ** rng.uniform(-1, 3)
         m = -m if m @ towards > 0 else m
-        found.append((f"random {k}", tuple(map(float, (*position + towards, *m, radius, 1.0, *position, *n)))))
+        found.append(
+            (f"random {k}", tuple(map(float, (*position + towards, *m, radius, 1.0, *position, *n))))
+        )
     return tuple(found)
 
 

@@ -37,9 +37,7 @@ def show_lights(results: Sequence[LightResult]) -> None:
         for found in results
     ]
     columns = ("closed form", "worst", "ulps", "condition", "at", "bound holds", "not finite", "cases")
-    show_table(
-        "worst error in ulps / condition number", (*columns, "textbook", "s", "outcome"), lines
-    )
+    show_table("worst error in ulps / condition number", (*columns, "textbook", "s", "outcome"), lines)
     for found in results:
         if found.worst > LIMIT or found.nonfinite:
             write(f"{found.name}: {found.worst:.3g} at {found.where}, {list(found.numbers)}")
