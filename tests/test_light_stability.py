@@ -1,4 +1,4 @@
-"""The closed forms of lights at hard configurations: they hold, the truths are right, wrong forms are found."""
+"""Closed forms of lights at hard configurations: they hold, their truths are right, wrong ones are found."""
 
 from __future__ import annotations
 

@@ -50,7 +50,7 @@ class FlatEmitter(Emitter):
 
     @property
     def anchor(self) -> FloatArray:
-        """The point (3,) [m] from which ``offsets`` lead to the corners, so that small lights keep their shape."""
+        """The point (3,) [m] from which ``offsets`` are measured, so that small lights keep their shape."""
         return np.zeros(3)
 
     @property

@@ -19,8 +19,8 @@ def stability(
     names: Annotated[
         list[str] | None,
         typer.Argument(
-            help="One row, with its lesson; without it, all. Models, with --models or --albedos; closed forms, "
-            "with --lights."
+            help="One row, with its lesson; without it, all. Models, with --models or --albedos; "
+            "closed forms, with --lights."
         ),
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,

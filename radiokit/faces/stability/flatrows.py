@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -88,7 +89,7 @@ def rows() -> tuple[LightRow, ...]:
     )
 
 
-def _points(x: tuple[Any, ...]) -> list[tuple[Any, ...]]:
+def _points(x: tuple[Any, ...]) -> list[truth.Vector]:
     return [x[k : k + 3] for k in range(0, len(x), 3)]
 
 
@@ -115,7 +116,7 @@ def _flux(corners: list[Any], radiance: Any) -> Any:
     import mpmath
 
     first, total = corners[0], [mpmath.mpf(0)] * 3
-    for b, c in zip(corners[1:], corners[2:], strict=False):
+    for b, c in pairwise(corners[1:]):
         part = truth.cross(truth.minus(b, first), truth.minus(c, first))
         total = [x + y / 2 for x, y in zip(total, part, strict=True)]
     return mpmath.pi * radiance * mpmath.sqrt(truth.dot(total, total))
@@ -149,6 +150,10 @@ def _case(label: str, points: Any, radiance: float, position: Any, normal: Any) 
     return label, tuple(map(float, numbers))
 
 
+def _moved(points: Any, *shift: float) -> Any:
+    return points + np.array(shift)
+
+
 def _polygons() -> tuple[Case, ...]:
     """Vertices, radiance, position, normal."""
     square = np.array([[-1.0, -1, 1], [-1, 1, 1], [1, 1, 1], [1, -1, 1]])
@@ -158,31 +163,31 @@ def _polygons() -> tuple[Case, ...]:
     shapes = [
         ("square", square, _HERE, _UP),
         ("square aslant", square, _HERE, _TILTED),
-        ("square from elsewhere", square + [3.0, -2.0, 5.0], (3.125, -1.5, 5.25), _UP),
+        ("square from elsewhere", _moved(square, 3.0, -2.0, 5.0), (3.125, -1.5, 5.25), _UP),
         ("tiny", square * [1e-8, 1e-8, 1], _HERE, _UP),
-        ("tiny aside", square * [1e-8, 1e-8, 1] + [0.75, 0.5, 0], _HERE, _TILTED),
-        ("tiny, far from the origin", square * 2.0**-10 + [1e6, 1.0, 2.0], (1e6 + 0.25, 1.0, 1.0), _UP),
+        ("tiny aside", _moved(square * [1e-8, 1e-8, 1], 0.75, 0.5, 0), _HERE, _TILTED),
+        ("tiny, far from the origin", _moved(square * 2.0**-10, 1e6, 1.0, 2.0), (1e6 + 0.25, 1.0, 1.0), _UP),
         ("tiniest", square * [1e-90, 1e-90, 1], _HERE, _UP),
-        ("far", square + [2e7, -1e7, 3e7], _HERE, _UP),
+        ("far", _moved(square, 2e7, -1e7, 3e7), _HERE, _UP),
         ("huge", square * [1e8, 1e8, 1], _HERE, _UP),
         ("huge, cut", square * [1e8, 1e8, 1], _HERE, _TILTED),
-        ("grazing", wall * [1, 1, 1e-8] + [0, 0, 1e-8], _HERE, _UP),
-        ("grazing and tiny", wall * [1, 1e-8, 1e-8] + [0, 0, 1e-8], _HERE, _UP),
+        ("grazing", _moved(wall * [1, 1, 1e-8], 0, 0, 1e-8), _HERE, _UP),
+        ("grazing and tiny", _moved(wall * [1, 1e-8, 1e-8], 0, 0, 1e-8), _HERE, _UP),
         ("an edge in the horizon", wall, _HERE, _UP),
-        ("cut at its vertices", wall * [1, 1, 2] + [0, 0, -1], _HERE, (0.0, 0.6, 0.8)),
-        ("cut to a hair", wall + [0, 0, -1 + 2.0**-40], _HERE, _UP),
-        ("all but a hair", wall * [1, 1, 2] + [0, 0, -(2.0**-40)], _HERE, _UP),
+        ("cut at its vertices", _moved(wall * [1, 1, 2], 0, 0, -1), _HERE, (0.0, 0.6, 0.8)),
+        ("cut to a hair", _moved(wall, 0, 0, -1 + 2.0**-40), _HERE, _UP),
+        ("all but a hair", _moved(wall * [1, 1, 2], 0, 0, -(2.0**-40)), _HERE, _UP),
         ("edge-on", square * [1, 1, 1e-12], _HERE, (0.96, 0.0, 0.28)),
-        ("close to an edge", square + [1 + 2.0**-30, 0.25, -1 + 2.0**-30], _HERE, _TILTED),
-        ("close to a corner", square + [1 + 2.0**-30, 1 + 2.0**-30, -1 + 2.0**-31], _HERE, _UP),
-        ("from close by", square * [1, 1, 1e-9] + [0.25, 0.125, 0], _HERE, _UP),
+        ("close to an edge", _moved(square, 1 + 2.0**-30, 0.25, -1 + 2.0**-30), _HERE, _TILTED),
+        ("close to a corner", _moved(square, 1 + 2.0**-30, 1 + 2.0**-30, -1 + 2.0**-31), _HERE, _UP),
+        ("from close by", _moved(square * [1, 1, 1e-9], 0.25, 0.125, 0), _HERE, _UP),
         ("ell", ell, _HERE, _UP),
         ("ell cut through its arms", ell, _HERE, (0.8, -0.48, -0.36)),
         ("star", star, _HERE, _UP),
         ("star cut into parts", star, _HERE, (0.0, -0.8, -0.6)),
         ("star tiny", star * [1e-7, 1e-7, 1] + [0.5, 0.25, 0], _HERE, _TILTED),
         ("from behind", square[::-1], _HERE, _UP),
-        ("in its plane", wall + [-1.0, 0, 1], _HERE, _UP),
+        ("in its plane", _moved(wall, -1.0, 0, 1), _HERE, _UP),
         ("below the horizon", square[::-1] * [1, 1, -1], _HERE, _UP),
         ("small numbers", square * 1e-90, _HERE, _TILTED),
         ("large numbers", square * 1e90, _HERE, _TILTED),
@@ -193,7 +198,7 @@ def _polygons() -> tuple[Case, ...]:
 def _triangles() -> tuple[Case, ...]:
     """Vertices, radiance, position, normal."""
     plain = np.array([[-0.3, -0.4, 1.0], [0.1, 0.7, 1.25], [0.5, -0.2, 0.75]])
-    shapes = [
+    shapes: list[tuple[Any, ...]] = [
         ("plain", plain, _HERE, _UP),
         ("octant", [(1, 0, 0), (0, 0, 1), (0, 1, 0)], _HERE, _UP),
         ("vertex in the horizon", [(1, 0, 0), (1, -0.5, 1), (1, 0.5, 1)], _HERE, _UP),
@@ -202,9 +207,9 @@ def _triangles() -> tuple[Case, ...]:
         ("sliver", [(-1, -0.5, 1), (0, 0.25 + 2.0**-40, 1), (1, 1, 1)], _HERE, _UP),
         ("needle", [(0, 0, 1), (0, 2.0**-30, 1), (3, 0, 2)], _HERE, _UP),
         ("needle cut", [(-3, 0, -1), (-3, 2.0**-30, -1), (3, 0, 2)], _HERE, _UP),
-        ("tiny", plain * [1e-8, 1e-8, 1e-8] + [0, 0, 1.0], _HERE, _UP),
-        ("tiny, aslant", plain * 1e-10 + [0.5, -0.25, 1.0], _HERE, _TILTED),
-        ("far", plain + [0, 3e8, 4e8], _HERE, _UP),
+        ("tiny", _moved(plain * [1e-8, 1e-8, 1e-8], 0, 0, 1.0), _HERE, _UP),
+        ("tiny, aslant", _moved(plain * 1e-10, 0.5, -0.25, 1.0), _HERE, _TILTED),
+        ("far", _moved(plain, 0, 3e8, 4e8), _HERE, _UP),
     ]
     rng = generator("triangle")
     for k in range(_RANDOM):
@@ -258,7 +263,7 @@ def _moments() -> tuple[Case, ...]:
         ("square, n 1", square, _TILTED, 1, _UP),
         ("square, n 20", square, _TILTED, 20, _UP),
         ("square, n 301", square, (0.1, 0.2, 1.0), 301, _UP),
-        ("tiny beside the axis, n 40", square * [1e-6, 1e-6, 1] + [0.3, 0, 0], _UP, 40, _UP),
+        ("tiny beside the axis, n 40", _moved(square * [1e-6, 1e-6, 1], 0.3, 0, 0), _UP, 40, _UP),
         ("square cut, n 9", square, (1.0, 0.0, 0.25), 9, (0.8, 0.0, 0.6)),
         ("ell, n 12", ell, (1.0, 1.0, 1.0), 12, _TILTED),
         ("grazing, n 7", square * [1, 1, 1e-6], _TILTED, 7, _UP),

@@ -284,7 +284,7 @@ def _settled(row: LightRow, numbers: tuple[float, ...]) -> tuple[Any, int] | Non
 
 
 def _condition(row: LightRow, numbers: tuple[float, ...], digits: int) -> float:
-    """Return Σ|x ∂f/∂x| / |f|, at a precision at which f has 50 digits; 0, which excuses nothing, for f = 0."""
+    """Return Σ|x ∂f/∂x| / |f|, where f has 50 digits; 0, which excuses nothing, for f = 0."""
     import mpmath
 
     with working_precision(digits):

@@ -1,4 +1,4 @@
-"""Round rows: the closed forms of sphere and disk lights, cut by the horizon, tiny, huge and all but touched."""
+"""Round rows: the closed forms of spheres and disks: cut by the horizon, tiny, huge and all but touched."""
 
 from __future__ import annotations
 

@@ -282,7 +282,7 @@ def _spot_textbook(*x: float) -> float:
 
 
 def _candela(towards: truth.Vector) -> Any:
-    """Return the table's value along a direction away from the light: vertical angle 0 is −z, horizontal x."""
+    """Return the table's value along a direction away from the light: angles count from −z, and from x."""
     import mpmath
 
     x, y, z = towards
