@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.contracts.parameters import check_parameters
+from radiokit.contracts.parameters import check_parameters, spectrum_length
 from radiokit.contracts.registry import Registry
 from radiokit.contracts.vectors import check_vectors
 from radiokit.facts.errors import RadiokitError
@@ -36,12 +36,23 @@ class Emitter(ABC):
         check_parameters(self)
         check_vectors(self)
 
+    @property
+    def wavelengths(self) -> int | None:
+        """How many wavelengths the light's strength is given for; None for a single number.
+
+        Radiances, irradiances and fluxes then have them on the last axis.
+        """
+        return spectrum_length(self)
+
     def incident(self, position: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return a delta light's directions (K, 3) and the irradiances normal to them (K,) [W m⁻²]."""
+        """Return a delta light's M directions (M, 3) and the irradiances normal to them [W m⁻²].
+
+        These are (M,), or (M, K) for K wavelengths.
+        """
         raise RadiokitError(f"{self.name} is no delta light: it has a radiance")
 
     def radiance_from(self, direction: FloatArray, position: FloatArray) -> FloatArray:
-        """Return the radiance that arrives from ``direction`` (N, 3): (N,) [W m⁻² sr⁻¹]."""
+        """Return the radiance that arrives from ``direction`` (N, 3): (N,) or (N, K) [W m⁻² sr⁻¹]."""
         raise RadiokitError(f"{self.name} is a delta light: it has no radiance")
 
     def sample(self, u: FloatArray, position: FloatArray) -> tuple[FloatArray, FloatArray]:

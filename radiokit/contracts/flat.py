@@ -13,7 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from radiokit.contracts.emitter import Emitter
-from radiokit.contracts.parameters import choice, parameter
+from radiokit.contracts.parameters import Spectrum, choice, parameter
+from radiokit.contracts.spectral import amount, weighted
 from radiokit.facts.directions import dot
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate, rounding
@@ -40,7 +41,9 @@ class FlatEmitter(Emitter):
 
     SOURCE: ClassVar[Source] = polygon.IRRADIANCE_SOURCE
 
-    radiance: float = parameter("[0, inf)", "W/m^2/sr", "radiance, the same everywhere on it", default=1.0)
+    radiance: Spectrum = parameter(
+        "[0, 1e100]", "W/m^2/sr", "radiance, the same everywhere on it", spectral=True, default=1.0
+    )
     sampling: str = choice("solid angle", "area", meaning="over what directions are evenly distributed")
 
     @property
@@ -81,12 +84,12 @@ class FlatEmitter(Emitter):
 
     def flux(self) -> Estimate:
         """Return the flux that leaves the front, Φ = πLA [W]."""
-        value = math.pi * self.radiance * self.area
-        return Estimate(value, 8 * float(np.finfo(float).eps) * value, "rounding", method="closed form")
+        value = math.pi * amount(self.radiance) * self.area
+        return Estimate(value, 8 * _EPS * value, "rounding", method="closed form")
 
     def radiance_from(self, direction: FloatArray, position: FloatArray) -> FloatArray:
         """Return L for directions (N, 3) in which the front of the light lies, 0 for others [W m⁻² sr⁻¹]."""
-        return np.where(_view(self, _key(position)).hit(direction), self.radiance, 0.0)
+        return weighted(_view(self, _key(position)).hit(direction), self.radiance)
 
     def sample(self, u: FloatArray, position: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Turn uniform points (N, 2) into directions (N, 3) to the light, and densities (N,) [sr⁻¹].
@@ -155,9 +158,10 @@ class FlatEmitter(Emitter):
         corners, origin = self._placed(position)
         self._check_off(corners, origin, position)
         found = polygon.irradiance(corners, origin, np.asarray(normal))
-        value = found.value * self.radiance
-        error = (found.error + self._blurred(corners - origin, found.value)) * self.radiance
-        error += float(np.spacing(value)) if value else 0.0
+        radiance = amount(self.radiance)
+        value = found.value * radiance
+        error = (found.error + self._blurred(corners - origin, found.value)) * radiance
+        error = error + np.where(value > 0, np.spacing(value), 0.0)[()]
         return Estimate(value, error, "rounding", method="closed form")
 
     def _placed(self, position: Any) -> tuple[FloatArray, FloatArray]:
@@ -270,14 +274,14 @@ class _Piece(Emitter):
 
     name: ClassVar[str] = "piece"
 
-    radiance: float
+    radiance: Spectrum
     warp: UniformSphericalTriangle
     size: float
     precision: float
 
     def radiance_from(self, direction: FloatArray, position: FloatArray) -> FloatArray:
         """Return L: only its own directions are asked about."""
-        return np.full(len(direction), self.radiance)
+        return weighted(np.ones(len(direction)), self.radiance)
 
     def sample(self, u: FloatArray, position: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return directions and densities; the square on the second number smooths the root at its corner."""

@@ -37,8 +37,8 @@ class Rectangle(FlatEmitter):
     up : tuple of 3 floats, optional
         Along its height, as far as that is possible; any length but 0. Without it, the first axis of
         ``frame(normal)`` is along its width.
-    radiance : float
-        L [W m⁻² sr⁻¹], at least 0.
+    radiance : float, or sequence of K floats
+        L [W m⁻² sr⁻¹], in [0, 1e100]; one number, or one a wavelength.
     sampling : {"solid angle", "area"}
         Over what its directions are sampled evenly.
 
