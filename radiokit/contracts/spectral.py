@@ -15,9 +15,11 @@ from radiokit.contracts.parameters import Spectrum
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 
-__all__ = ["amount", "check_wavelengths", "stacked", "times", "weighted"]
+__all__ = ["amount", "check_wavelengths", "flux_estimate", "stacked", "times", "weighted"]
 
 FloatArray = npt.NDArray[np.float64]
+
+_EPS = float(np.finfo(float).eps)
 
 
 def amount(strength: Spectrum) -> Any:
@@ -74,6 +76,23 @@ def check_wavelengths(material: int | None, light: int | None) -> int | None:
     if material is not None and light is not None and material != light:
         raise ParameterError("wavelengths of the light", light, f"the material's, {material}, or a single number")
     return light if material is None else material
+
+
+def flux_estimate(value: Any, ulps: float, **size: float) -> Estimate:
+    """Return the flux of a light of the size given as a keyword, with a rounding bound.
+
+    Raises
+    ------
+    ParameterError
+        When it is beyond the range of floats.
+
+    >>> flux_estimate(2.0, 4, radius=1.0).value
+    2.0
+    """
+    if not np.all(np.isfinite(value)):
+        ((name, given),) = size.items()
+        raise ParameterError(name, given, "so small that the flux is a float, below 1.8e308 W")
+    return Estimate(value, ulps * _EPS * value, "rounding", method="closed form")
 
 
 def stacked(estimates: Sequence[Estimate]) -> Estimate:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import ClassVar
@@ -10,10 +11,12 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from radiokit.contracts.chords import DiskPiece
 from radiokit.contracts.emitter import Emitter
-from radiokit.contracts.parameters import parameter
+from radiokit.contracts.parameters import Spectrum, choice, parameter
+from radiokit.contracts.spectral import amount, flux_estimate, weighted
 from radiokit.contracts.vectors import vector
-from radiokit.facts.directions import frame
+from radiokit.facts.directions import frame, to_world, unit
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.facts.source import Source
@@ -49,11 +52,13 @@ class Disk(Emitter):
     normal : tuple of 3 floats
         The side that shines; any length but 0, stored as a unit vector.
     radius : float
-        [m], above 0.
-    radiance : float
-        Radiance L along the normal [W m⁻² sr⁻¹], at least 0.
+        [m], in (0, 1e150].
+    radiance : float, or sequence of K floats
+        Radiance L along the normal [W m⁻² sr⁻¹], in [0, 1e100]; one number, or one a wavelength.
     exponent : float
-        n, at least 0; 0 for Lambert's law.
+        n in [0, 1e6]; 0 for Lambert's law.
+    sampling : {"solid angle", "area"}
+        Over what its directions are sampled evenly, or nearly so for the solid angle.
 
     Raises
     ------
@@ -72,17 +77,18 @@ class Disk(Emitter):
 
     center: tuple[float, float, float] = vector("point", "m", "the disk's centre")
     normal: tuple[float, float, float] = vector("direction", "1", "the side that shines")
-    radius: float = parameter("(0, inf)", "m", "the disk's radius")
-    radiance: float = parameter("[0, inf)", "W/m^2/sr", "radiance along the normal")
+    radius: float = parameter("(0, 1e150]", "m", "the disk's radius")
+    radiance: Spectrum = parameter("[0, 1e100]", "W/m^2/sr", "radiance along the normal", spectral=True)
     exponent: float = parameter("[0, 1e6]", "1", "n of radiance ∝ cosⁿ of the angle of emission", default=0.0)
+    sampling: str = choice("solid angle", "area", meaning="over what directions are evenly distributed")
 
     def radiance_from(self, direction: FloatArray, position: FloatArray) -> FloatArray:
         """Return L cosⁿ for directions (N, 3) that meet the disk's bright side, 0 for the others."""
         seen = self._seen(position)
         if seen is None:
-            return np.zeros(len(direction))
+            return weighted(np.zeros(len(direction)), self.radiance)
         emission = np.maximum(-(direction @ np.array(self.normal)), 0.0)
-        return np.where(_meets(direction, seen), self.radiance * emission**self.exponent, 0.0)
+        return weighted(np.where(_meets(direction, seen), emission**self.exponent, 0.0), self.radiance)
 
     def sample(self, u: FloatArray, position: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Turn uniform points (N, 2) into directions (N, 3) within the cone, and their densities [sr⁻¹].
@@ -96,6 +102,8 @@ class Disk(Emitter):
         if seen is None:
             away = np.broadcast_to(-np.array(self.normal), (len(u), 3))
             return away.copy(), np.zeros(len(u))
+        if self.sampling == "area":
+            return self._over_area(u, seen)
         a, b = seen.view.semi_axes
         kappa = math.hypot(1.0, a) / math.hypot(1.0, b)
         chi = 2.0 * np.pi * u[:, 1]
@@ -114,6 +122,9 @@ class Disk(Emitter):
         seen = self._seen(position)
         if seen is None:
             return np.zeros(len(direction))
+        if self.sampling == "area":
+            emission = -(direction @ np.array(self.normal))
+            return np.where(_meets(direction, seen), _per_area(emission, seen.view), 0.0)
         a, b = seen.view.semi_axes
         kappa = math.hypot(1.0, a) / math.hypot(1.0, b)
         local = direction @ seen.axes.T
@@ -121,6 +132,42 @@ class Disk(Emitter):
         top, bottom = np.hypot(x, y), np.hypot(x, y / kappa)
         flat = np.divide(top, bottom, out=np.ones_like(top), where=bottom > 0) ** 2
         return np.where(_meets(direction, seen), _density(a, b, kappa, flat), 0.0)
+
+    def _over_area(self, u: FloatArray, seen: _Seen) -> tuple[FloatArray, FloatArray]:
+        radius, turn = seen.view.radius * np.sqrt(u[:, 0]), 2.0 * np.pi * u[:, 1]
+        local = np.stack((radius * np.cos(turn), radius * np.sin(turn), np.zeros(len(u))), axis=-1)
+        points = np.array([float(x) for x in seen.towards]) + to_world(frame(self.normal), local)
+        direction = points / np.sqrt(np.sum(points * points, axis=1))[:, None]
+        return direction, _per_area(-(direction @ np.array(self.normal)), seen.view)
+
+    def pieces(self, position: FloatArray, normal: FloatArray) -> Sequence[Emitter]:
+        """Return what of the disk is above a receiver's horizon."""
+        seen = self._seen(position)
+        if seen is None:
+            return ()
+        horizon = _against(seen, normal)
+        if horizon.hidden <= 0:
+            return (self,) if horizon.along > 0 else ()
+        # The way across to the plane, level and up, by which the chord's direction is square to both.
+        up, across = np.asarray(normal, dtype=float), -np.array(self.normal)
+        level = [-m - horizon.towards / horizon.length * n for m, n in zip(seen.normal, horizon.n, strict=True)]
+        largest = max(map(abs, level))
+        side = unit([float(x / largest) for x in level])
+        chord = np.cross(up, side)
+        aside = inner(cross(horizon.n, seen.normal), seen.towards)
+        return (
+            DiskPiece(
+                radiance=self.radiance,
+                exponent=self.exponent,
+                axes=np.stack((chord, side, up)),
+                turn=horizon.turn,
+                radius=seen.view.radius,
+                depth=seen.view.depth,
+                aside=-math.copysign(horizon.aside, aside),
+                slope=horizon.slope,
+                facing=horizon.facing,
+            ),
+        )
 
     def solid_angle(self, position: FloatArray) -> Estimate:
         """Return Ω [sr] by one elliptic integral, for any place; 0 from behind and from the disk's plane."""
@@ -136,44 +183,44 @@ class Disk(Emitter):
         """
         seen = self._seen(position)
         if seen is None:
-            return Estimate(0.0, 0.0, "rounding", method="closed form")
-        n, v, m, view = rational(normal), seen.towards, seen.normal, seen.view
-        length, across = inner(n, n), inner(m, m)
-        along, towards = inner(n, v), -inner(n, m)
-        facing = math.copysign(root(towards * towards / (length * across)), towards)
-        aside = cross(n, m)
-        steep = inner(aside, aside) / across  # the square of the normal's part in the disk's plane
-        hidden = seen.radius**2 * steep - along * along
-        if hidden <= 0 and along <= 0:
-            return Estimate(0.0, 0.0, "rounding", method="closed form")
-        if self.exponent and (hidden > 0 or view.offset > 0):
+            return Estimate(0.0, 0.0, "rounding", method="closed form").scaled(amount(self.radiance))
+        view, horizon = seen.view, _against(seen, normal)
+        radiance = amount(self.radiance)
+        if horizon.hidden <= 0 and horizon.along <= 0:
+            return Estimate(0.0, 0.0, "rounding", method="closed form").scaled(radiance)
+        if self.exponent and (horizon.hidden > 0 or view.offset > 0):
             return None
         if self.exponent:
             power = self.exponent + 2.0
             share = -math.expm1(-0.5 * power * math.log1p((view.radius / view.depth) ** 2))
-            value = self.radiance * facing * 2.0 * math.pi / power * share
-            return Estimate(value, 16 * _EPS * value, "rounding", method="closed form")
-        if hidden <= 0:
-            value = self.radiance * view.whole(height=root(along * along / length), facing=facing)
-            return Estimate(value, 32 * _EPS * value, "rounding", method="closed form")
-        share, error, evaluations = view.cut(
-            turn=math.atan2(root(hidden), math.copysign(root(along * along), -along)),
-            slope=root(steep / length),
-            facing=facing,
-            aside=root(inner(aside, v) ** 2 / inner(aside, aside)),
+            value = horizon.facing * 2.0 * math.pi / power * share
+            return Estimate(value, 16 * _EPS * value, "rounding", method="closed form").scaled(radiance)
+        if horizon.hidden <= 0:
+            height = root(horizon.along * horizon.along / horizon.length)
+            value = view.whole(height=height, facing=horizon.facing)
+            return Estimate(value, 32 * _EPS * value, "rounding", method="closed form").scaled(radiance)
+        value, error, evaluations = view.cut(
+            turn=horizon.turn, slope=horizon.slope, facing=horizon.facing, aside=horizon.aside
         )
-        value, error = self.radiance * share, self.radiance * error
-        return Estimate(value, error, "truncation", evaluations, method="integral along the disk's edge")
+        method = "integral along the disk's edge"
+        return Estimate(value, error, "truncation", evaluations, method=method).scaled(radiance)
 
     def flux(self) -> Estimate:
         """Return the radiant flux Φ = 2πL/(n + 2) · πR² [W].
+
+        Raises
+        ------
+        ParameterError
+            When it is beyond the range of floats.
 
         >>> lamp = Disk(center=(0, 0, 2), normal=(0, 0, -1), radius=2, radiance=1.0, exponent=2)
         >>> round(float(lamp.flux().value) / np.pi**2, 12)
         2.0
         """
-        value = 2.0 * math.pi / (self.exponent + 2.0) * math.pi * self.radius * self.radius * self.radiance
-        return Estimate(value, 8 * _EPS * value, "rounding", method="closed form")
+        share = 2.0 * math.pi / (self.exponent + 2.0)
+        with np.errstate(over="ignore"):
+            value = share * math.pi * self.radius * self.radius * amount(self.radiance)
+        return flux_estimate(value, 8, radius=self.radius)
 
     def _seen(self, position: FloatArray) -> _Seen | None:
         """Return what a point sees of the disk, or None behind it and in its plane."""
@@ -191,6 +238,9 @@ class Disk(Emitter):
         depth, square, size = depth / unit, square / unit**2, size / unit**2
         foot = depth * depth / across
         offset = root(square - foot)
+        if not min(root(foot), float(radius)) > 1e-100:
+            allowed = f"within 1e100 radii of the disk around {self.center}, and as far off its plane"
+            raise ParameterError("position", tuple(map(float, position)), allowed)
         view = DiskView(
             radius=float(radius),
             depth=root(foot),
@@ -198,9 +248,6 @@ class Disk(Emitter):
             rim=float(square - foot - size) / (offset + float(radius)),
             power=float(square - size),
         )
-        if not min(view.depth, view.radius) > 1e-100:
-            allowed = f"within 1e100 radii of the disk around {self.center}, and as far off its plane"
-            raise ParameterError("position", tuple(map(float, position)), allowed)
         tilt = 0.5 * math.atan2(2 * view.depth * offset, float(2 * foot + size - square))
         return _Seen(v, m, radius, view, self._axes(v, depth / across, tilt))
 
@@ -218,6 +265,53 @@ class Disk(Emitter):
         return np.stack(
             (first, np.cross(across, outward), math.cos(tilt) * across + math.sin(tilt) * outward)
         )
+
+
+@dataclass(frozen=True)
+class _Horizon:
+    """A receiver's horizon beside a disk: squares and inner products without rounding, and what follows.
+
+    ``along`` and ``towards`` are the inner products of the receiver's normal, of squared length ``length``,
+    with the ways to the centre and across to the plane; the horizon cuts the disk where ``hidden`` is above 0.
+    """
+
+    n: RationalVector
+    length: Fraction
+    along: Fraction
+    towards: Fraction
+    hidden: Fraction
+    slope: float
+    facing: float
+    aside: float
+
+    @property
+    def turn(self) -> float:
+        """Half the angle of the disk's edge that is above the horizon [rad]."""
+        return math.atan2(root(self.hidden), math.copysign(root(self.along * self.along), -self.along))
+
+
+def _against(seen: _Seen, normal: FloatArray) -> _Horizon:
+    n, v, m = rational(normal), seen.towards, seen.normal
+    length, across = inner(n, n), inner(m, m)
+    along, towards, chord = inner(n, v), -inner(n, m), cross(n, m)
+    steep = inner(chord, chord) / across  # the square of the normal's part in the disk's plane
+    return _Horizon(
+        n=n,
+        length=length,
+        along=along,
+        towards=towards,
+        hidden=seen.radius**2 * steep - along * along,
+        slope=root(steep / length),
+        facing=math.copysign(root(towards * towards / (length * across)), towards),
+        aside=root(inner(chord, v) ** 2 / inner(chord, chord)) if steep else 0.0,
+    )
+
+
+def _per_area(emission: FloatArray, view: DiskView) -> FloatArray:
+    """Return r²/(A cosθ), with θ at the disk, by its cosine: a² / (A cos³θ)."""
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+        density = (view.depth / view.radius) ** 2 / (np.pi * emission**3)
+    return np.where(emission > 0, np.minimum(density, np.finfo(float).max), 0.0)
 
 
 def _density(a: float, b: float, kappa: float, flat: FloatArray) -> FloatArray:

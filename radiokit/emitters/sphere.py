@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
+from radiokit.contracts.chords import CapPiece
 from radiokit.contracts.emitter import Emitter
-from radiokit.contracts.parameters import parameter
+from radiokit.contracts.parameters import Spectrum, choice, parameter
+from radiokit.contracts.spectral import amount, flux_estimate, weighted
 from radiokit.contracts.vectors import vector
 from radiokit.facts.directions import frame, to_world, unit
 from radiokit.facts.errors import ParameterError
@@ -26,6 +29,7 @@ __all__ = ["Sphere"]
 FloatArray = npt.NDArray[np.float64]
 
 _EPS = float(np.finfo(float).eps)
+_MOST = float(np.finfo(float).max)
 
 
 @dataclass(frozen=True)
@@ -49,9 +53,11 @@ class Sphere(Emitter):
     center : tuple of 3 floats
         [m].
     radius : float
-        [m], above 0.
-    radiance : float
-        Radiance L [W m⁻² sr⁻¹], at least 0.
+        [m], in (0, 1e150].
+    radiance : float, or sequence of K floats
+        Radiance L [W m⁻² sr⁻¹], in [0, 1e100]; one number, or one a wavelength.
+    sampling : {"solid angle", "area"}
+        Over what its directions are sampled evenly: all that is seen of it counts alike, or all of the area.
 
     Raises
     ------
@@ -69,27 +75,55 @@ class Sphere(Emitter):
     SOURCE: ClassVar[Source] = CAP_SOURCE
 
     center: tuple[float, float, float] = vector("point", "m", "the sphere's centre")
-    radius: float = parameter("(0, inf)", "m", "the sphere's radius")
-    radiance: float = parameter("[0, inf)", "W/m^2/sr", "radiance, the same everywhere and in all directions")
+    radius: float = parameter("(0, 1e150]", "m", "the sphere's radius")
+    radiance: Spectrum = parameter(
+        "[0, 1e100]", "W/m^2/sr", "radiance, the same everywhere and in all directions", spectral=True
+    )
+    sampling: str = choice("solid angle", "area", meaning="over what directions are evenly distributed")
 
     def radiance_from(self, direction: FloatArray, position: FloatArray) -> FloatArray:
         """Return L for directions (N, 3) that meet the sphere, 0 for the others."""
-        return np.where(self._meets(direction, self._view(position)), self.radiance, 0.0)
+        return weighted(self._meets(direction, self._view(position)), self.radiance)
 
     def sample(self, u: FloatArray, position: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Turn uniform points (N, 2) into directions (N, 3), uniform in the cone, and densities [sr⁻¹].
+        """Turn uniform points (N, 2) into directions (N, 3) within the cone, and densities [sr⁻¹].
 
         Source: Shirley, Wang, Zimmerman (1996), Monte Carlo techniques for direct lighting calculations,
         doi:10.1145/226150.226151, section 3.
         """
         view = self._view(position)
+        if self.sampling == "area":
+            return _over_area(u, view)
         cone = UniformCone(half_angle=math.atan2(view.sine, view.cosine))
         return to_world(frame(view.axis), cone.sample(u)), np.full(len(u), 1.0 / _cone(view))
 
     def pdf(self, direction: FloatArray, position: FloatArray) -> FloatArray:
-        """Return 1/Ω in the cone and 0 outside [sr⁻¹]."""
+        """Return the density of ``sample`` [sr⁻¹]: 1/Ω, or r²/(A cosθ), in the cone, and 0 outside."""
         view = self._view(position)
-        return np.where(self._meets(direction, view), 1.0 / _cone(view), 0.0)
+        density: Any = 1.0 / _cone(view)
+        if self.sampling == "area":
+            density = _per_area(np.sqrt(np.sum((direction - view.axis) ** 2, axis=1)), view)
+        return np.where(self._meets(direction, view), density, 0.0)
+
+    def pieces(self, position: FloatArray, normal: FloatArray) -> Sequence[Emitter]:
+        """Return what of the sphere is above a receiver's horizon."""
+        view, n = self._view(position), rational(normal)
+        length, along = inner(n, n), inner(n, view.towards)
+        hidden = Fraction(self.radius) ** 2 * length - along * along
+        if hidden <= 0:
+            return (self,) if along > 0 else ()
+        level = [x - along / length * y for x, y in zip(view.towards, n, strict=True)]
+        largest = max(map(abs, level))
+        side, up = unit([float(x / largest) for x in level]), np.asarray(normal, dtype=float)
+        return (
+            CapPiece(
+                radiance=self.radiance,
+                axes=np.stack((np.cross(up, side), side, up)),
+                turn=math.atan2(root(hidden), math.copysign(root(along * along), -along)),
+                sine=view.sine,
+                cosine=view.cosine,
+            ),
+        )
 
     def solid_angle(self, position: FloatArray) -> Estimate:
         """Return Ω = 4π sin²(σ/2) [sr], with sinσ = R/d: 2π for a sphere touched."""
@@ -118,17 +152,23 @@ class Sphere(Emitter):
                 angle=math.atan2(root(hidden * view.square), root(view.tangent * along * along)),
                 half_azimuth=math.atan2(root(hidden), root(view.tangent * length)),
             )
-        value *= self.radiance
-        return Estimate(value, 48 * _EPS * value, "rounding", method="closed form")
+        found = Estimate(value, 48 * _EPS * value, "rounding", method="closed form")
+        return found.scaled(amount(self.radiance))
 
     def flux(self) -> Estimate:
         """Return the radiant flux Φ = πL · 4πR² [W].
 
+        Raises
+        ------
+        ParameterError
+            When it is beyond the range of floats.
+
         >>> round(float(Sphere(center=(0, 0, 4), radius=2, radiance=1.0).flux().value) / np.pi**2, 12)
         16.0
         """
-        value = 4.0 * math.pi**2 * self.radius * self.radius * self.radiance
-        return Estimate(value, 4 * _EPS * value, "rounding", method="closed form")
+        with np.errstate(over="ignore"):
+            value = 4.0 * math.pi**2 * self.radius * self.radius * amount(self.radiance)
+        return flux_estimate(value, 4, radius=self.radius)
 
     def _view(self, position: FloatArray) -> _View:
         towards = difference(self.center, position)
@@ -151,6 +191,36 @@ class Sphere(Emitter):
         chord = view.sine * math.sqrt(2.0 / (1.0 + view.cosine))
         distance = np.sqrt(np.sum((direction - view.axis) ** 2, axis=1))
         return np.asarray(distance <= chord * (1.0 + 4 * _EPS) + 2 * _EPS)
+
+
+def _over_area(u: FloatArray, view: _View) -> tuple[FloatArray, FloatArray]:
+    """Return directions to points spread evenly over what is seen of the surface, and their densities.
+
+    In units of the distance d, with γ the point's angle at the centre from the way to the receiver and
+    g = 1 − cosγ at most 1 − R/d.
+    """
+    facing = view.cosine * view.cosine / (1.0 + view.sine)  # 1 − R/d
+    g = u[:, 0] * facing
+    across, along = view.sine * np.sqrt(g * (2.0 - g)), facing + view.sine * g
+    length = np.hypot(across, along)
+    sine, cosine = across / length, along / length
+    turn = 2.0 * np.pi * u[:, 1]
+    local = np.stack((sine * np.cos(turn), sine * np.sin(turn), cosine), axis=-1)
+    # The surface turns from the ray by cosθ = (cosγ − R/d)/r, which is 0 at the rim.
+    with np.errstate(divide="ignore"):
+        density = length**3 / (2.0 * np.pi * view.sine**2 * facing * (facing - g))
+    return to_world(frame(view.axis), local), np.minimum(density, _MOST)
+
+
+def _per_area(chord: FloatArray, view: _View) -> FloatArray:
+    """Return r²/(A cosθ) for directions at a distance from the axis' unit vector."""
+    sine = chord * np.sqrt(np.maximum(1.0 - 0.25 * chord * chord, 0.0))
+    slant = np.sqrt(np.maximum((view.sine - sine) * (view.sine + sine), 0.0))  # R/d cosθ
+    length = view.cosine * view.cosine / (np.sqrt((1.0 - sine) * (1.0 + sine)) + slant)
+    facing = view.cosine * view.cosine / (1.0 + view.sine)
+    with np.errstate(divide="ignore"):
+        density = length * length / (2.0 * np.pi * view.sine * facing * slant)
+    return np.minimum(density, _MOST)
 
 
 def _cone(view: _View) -> float:

@@ -129,7 +129,7 @@ def _cut(
     seen = np.sin(x) * np.sin(h - x / 2) * np.sin(above + x / 2) - 0.5 * x_minus_sine(x) * np.cos(edge)
     parts = np.stack((slope * seen, 2 * np.sin(x / 2) * np.sin(above + x / 2), np.sign(x)))
     sums = np.sum(parts * weight, axis=-1)
-    value, area, turn = (np.bincount(cell[span], part, len(top)) for part in sums)
+    value, area, turn = np.stack([np.bincount(cell[span], part, len(top)) for part in sums])
     height, length = np.zeros(len(top)), np.zeros(len(top))
     np.maximum.at(height, cell[span], np.max(slope * np.sin(np.minimum(h, math.pi / 2)), axis=-1))
     np.maximum.at(length, cell[span], np.max(x, axis=-1))
@@ -156,5 +156,4 @@ def _smooth_spans(
     ends = np.stack((start, *places, start + step_phi), axis=-1)
     ends = np.sort(np.clip(ends, start[:, None], start[:, None] + step_phi), axis=-1)
     cell, k = np.nonzero(np.diff(ends, axis=-1) > 0)
-    found: tuple[npt.NDArray[np.intp], FloatArray, FloatArray] = (cell, ends[cell, k], ends[cell, k + 1])
-    return found
+    return cell, ends[cell, k], ends[cell, k + 1]
