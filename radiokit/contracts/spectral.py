@@ -74,7 +74,9 @@ def check_wavelengths(material: int | None, light: int | None) -> int | None:
     3
     """
     if material is not None and light is not None and material != light:
-        raise ParameterError("wavelengths of the light", light, f"the material's, {material}, or a single number")
+        raise ParameterError(
+            "wavelengths of the light", light, f"the material's, {material}, or a single number"
+        )
     return light if material is None else material
 
 

@@ -150,7 +150,9 @@ class Disk(Emitter):
             return (self,) if horizon.along > 0 else ()
         # The way across to the plane, level and up, by which the chord's direction is square to both.
         up, across = np.asarray(normal, dtype=float), -np.array(self.normal)
-        level = [-m - horizon.towards / horizon.length * n for m, n in zip(seen.normal, horizon.n, strict=True)]
+        level = [
+            -m - horizon.towards / horizon.length * n for m, n in zip(seen.normal, horizon.n, strict=True)
+        ]
         largest = max(map(abs, level))
         side = unit([float(x / largest) for x in level])
         chord = np.cross(up, side)

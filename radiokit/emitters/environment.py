@@ -215,7 +215,9 @@ def _checked_map(value: Any) -> FloatArray:
     if bad.any():
         first = tuple(np.argwhere(bad)[0].tolist())
         place = ", ".join(map(str, first))
-        raise ParameterError(f"radiance[{place}]", float(table[first]), "finite and at least 0, at most 1e100")
+        raise ParameterError(
+            f"radiance[{place}]", float(table[first]), "finite and at least 0, at most 1e100"
+        )
     table += 0.0
     table.flags.writeable = False
     return table

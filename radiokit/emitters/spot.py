@@ -66,9 +66,7 @@ class Spot(PointLight):
 
     position: tuple[float, float, float] = vector("point", "m", "where the light is")
     direction: tuple[float, float, float] = vector("direction", "1", "the axis, away from the light")
-    intensity: Spectrum = parameter(
-        "[0, 1e100]", "W/sr", "radiant intensity on the axis", spectral=True
-    )
+    intensity: Spectrum = parameter("[0, 1e100]", "W/sr", "radiant intensity on the axis", spectral=True)
     outer: float = parameter("(0, 3.141592653589793]", "rad", "half-angle beyond which it is dark")
     inner: float = parameter("[0, 3.141592653589793]", "rad", "half-angle of constant intensity", default=0.0)
 
