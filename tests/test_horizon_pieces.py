@@ -126,14 +126,14 @@ def test_a_cut_disk_with_an_exponent_to_twelve_digits():
     with mpmath.workdps(18):
 
         def across(z):
-            half = mpmath.sqrt(1 - (z - mpf(0.3)) ** 2)
+            half = mpmath.sqrt(max(1 - (z - mpf(0.3)) ** 2, 0))
 
             def point(y):
                 return 16 * z / (4 + y * y + z * z) ** mpf(3.5)  # cosθ cos⁴θ'/r²
 
             return mpmath.quad(point, [mpf(0.5) - half, mpf(0.5) + half])
 
-        truth = mpmath.quad(across, [0, mpf(1.3)])
+        truth = mpmath.quad(across, [0, 1 + mpf(0.3)])
     assert found.value == pytest.approx(float(truth), rel=1e-12)
     assert found.error <= 1e-10 * found.value
     assert found.evaluations <= 5000
@@ -226,7 +226,7 @@ def test_the_density_of_the_area_is_one_of_directions(name, rng):
 
 @pytest.mark.parametrize("light", [
     *BY_AREA.values(),
-    Rectangle(center=(0.2, 0.1, 1), normal=(0.1, 0.2, -1), width=2, height=0.5, radiance=2.0, sampling="area"),
+    Rectangle(center=(0.2, 0.1, 1), normal=(0, 0, -1), width=2, height=0.5, radiance=2.0, sampling="area"),
     Sphere(center=(2, 0, 0.3), radius=1, radiance=2.0, sampling="area"),
     Disk(center=(2, 0, 0.3), normal=(-1, 0, 0), radius=1, radiance=2.0, sampling="area", exponent=2.0),
 ], ids=[*BY_AREA, "rectangle", "sphere cut", "disk cut"])  # fmt: skip

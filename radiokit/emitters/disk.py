@@ -21,7 +21,7 @@ from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.facts.source import Source
 from radiokit.measure.exact import RationalVector, cross, difference, inner, rational, root
-from radiokit.physics.disk import DISK_SOURCE, DiskView
+from radiokit.physics.disk import DISK_SOURCE, DiskView, against
 
 __all__ = ["Disk"]
 
@@ -145,18 +145,17 @@ class Disk(Emitter):
         seen = self._seen(position)
         if seen is None:
             return ()
-        horizon = _against(seen, normal)
+        horizon = against(normal, seen.normal, seen.towards, seen.radius)
         if horizon.hidden <= 0:
             return (self,) if horizon.along > 0 else ()
-        # The way across to the plane, level and up, by which the chord's direction is square to both.
-        up, across = np.asarray(normal, dtype=float), -np.array(self.normal)
+        up, share = np.asarray(normal, dtype=float), horizon.towards / horizon.length
         level = [
-            -m - horizon.towards / horizon.length * n for m, n in zip(seen.normal, horizon.n, strict=True)
-        ]
+            -m - share * n for m, n in zip(seen.normal, horizon.up, strict=True)
+        ]  # across, as far as level
         largest = max(map(abs, level))
         side = unit([float(x / largest) for x in level])
         chord = np.cross(up, side)
-        aside = inner(cross(horizon.n, seen.normal), seen.towards)
+        aside = inner(cross(horizon.up, seen.normal), seen.towards)
         return (
             DiskPiece(
                 radiance=self.radiance,
@@ -186,7 +185,7 @@ class Disk(Emitter):
         seen = self._seen(position)
         if seen is None:
             return Estimate(0.0, 0.0, "rounding", method="closed form").scaled(amount(self.radiance))
-        view, horizon = seen.view, _against(seen, normal)
+        view, horizon = seen.view, against(normal, seen.normal, seen.towards, seen.radius)
         radiance = amount(self.radiance)
         if horizon.hidden <= 0 and horizon.along <= 0:
             return Estimate(0.0, 0.0, "rounding", method="closed form").scaled(radiance)
@@ -267,46 +266,6 @@ class Disk(Emitter):
         return np.stack(
             (first, np.cross(across, outward), math.cos(tilt) * across + math.sin(tilt) * outward)
         )
-
-
-@dataclass(frozen=True)
-class _Horizon:
-    """A receiver's horizon beside a disk: squares and inner products without rounding, and what follows.
-
-    ``along`` and ``towards`` are the inner products of the receiver's normal, of squared length ``length``,
-    with the ways to the centre and across to the plane; the horizon cuts the disk where ``hidden`` is above 0.
-    """
-
-    n: RationalVector
-    length: Fraction
-    along: Fraction
-    towards: Fraction
-    hidden: Fraction
-    slope: float
-    facing: float
-    aside: float
-
-    @property
-    def turn(self) -> float:
-        """Half the angle of the disk's edge that is above the horizon [rad]."""
-        return math.atan2(root(self.hidden), math.copysign(root(self.along * self.along), -self.along))
-
-
-def _against(seen: _Seen, normal: FloatArray) -> _Horizon:
-    n, v, m = rational(normal), seen.towards, seen.normal
-    length, across = inner(n, n), inner(m, m)
-    along, towards, chord = inner(n, v), -inner(n, m), cross(n, m)
-    steep = inner(chord, chord) / across  # the square of the normal's part in the disk's plane
-    return _Horizon(
-        n=n,
-        length=length,
-        along=along,
-        towards=towards,
-        hidden=seen.radius**2 * steep - along * along,
-        slope=root(steep / length),
-        facing=math.copysign(root(towards * towards / (length * across)), towards),
-        aside=root(inner(chord, v) ** 2 / inner(chord, chord)) if steep else 0.0,
-    )
 
 
 def _per_area(emission: FloatArray, view: DiskView) -> FloatArray:
