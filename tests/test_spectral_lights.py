@@ -22,7 +22,13 @@ LIGHTS = {
     "goniometric": {"position": (0, 0.3, 2), "ies": IES, "scale": SPECTRUM},
     "directional": {"direction": (0, 1, 2), "irradiance": SPECTRUM},
     "sphere": {"center": (2, 0, 0.5), "radius": 1, "radiance": SPECTRUM},
-    "disk": {"center": (2, 0, 0.5), "normal": (-1, 0, -0.2), "radius": 1, "radiance": SPECTRUM, "exponent": 0.0},
+    "disk": {
+        "center": (2, 0, 0.5),
+        "normal": (-1, 0, -0.2),
+        "radius": 1,
+        "radiance": SPECTRUM,
+        "exponent": 0.0,
+    },
     "polygon": {"vertices": SQUARE, "radiance": SPECTRUM},
     "triangle": {"vertices": SQUARE[:3], "radiance": SPECTRUM},
     "rectangle": {"center": (0, 0, 2), "normal": (0, 0.2, -1), "width": 1, "height": 2, "radiance": SPECTRUM},
@@ -36,7 +42,9 @@ ORIGIN, UP, TILTED = np.zeros(3), np.array([0.0, 0.0, 1.0]), np.array([0.6, 0.0,
 
 def one(light, k):
     if light.name == "environment":
-        return emitter("environment", radiance=light.radiance[..., k], normal=light.normal, forward=light.forward)
+        return emitter(
+            "environment", radiance=light.radiance[..., k], normal=light.normal, forward=light.forward
+        )
     return at_wavelength(light, k)
 
 
@@ -85,8 +93,8 @@ def test_samples_serve_all_wavelengths(name, rng):
 
 
 @pytest.mark.parametrize(("name", "field"), [
-    ("point", "intensity"), ("directional", "irradiance"), ("sphere", "radiance"), ("sky_gradient", "horizon"),
-    ("goniometric", "scale"), ("polygon", "radiance"),
+    ("point", "intensity"), ("directional", "irradiance"), ("sphere", "radiance"), ("polygon", "radiance"),
+    ("sky_gradient", "horizon"), ("goniometric", "scale"),
 ])  # fmt: skip
 def test_bad_spectra_are_named(name, field):
     for bad in ((), (1.0, -1.0), (1.0, float("nan")), [[1.0, 2.0]], (1.0, float("inf")), (1.0, 1e200)):
@@ -97,7 +105,7 @@ def test_bad_spectra_are_named(name, field):
 def test_unequal_spectra_are_refused():
     with pytest.raises(ParameterError, match="as many numbers as"):
         emitter("sky_gradient", radiance=(1.0, 2.0), horizon=(1.0, 2.0, 3.0))
-    with pytest.raises(ParameterError, match="wavelengths of the light = 2 .* the material's, 3"):
+    with pytest.raises(ParameterError, match=r"wavelengths of the light = 2 .* the material's, 3"):
         times(np.ones((4, 3)), np.ones((4, 2)))
     assert check_wavelengths(None, 2) == check_wavelengths(2, None) == check_wavelengths(2, 2) == 2
     assert check_wavelengths(None, None) is None
@@ -108,4 +116,6 @@ def test_a_planted_mix_up_of_wavelengths_is_found():
     reversed_spectrum = emitter("sphere", **{**LIGHTS["sphere"], "radiance": SPECTRUM[::-1]})
     assert irradiance(light).value != pytest.approx(irradiance(reversed_spectrum).value, rel=1e-3)
     assert spectrum_length(light) == 4
-    assert stacked([irradiance(one(light, k)) for k in range(4)]).value == pytest.approx(irradiance(light).value)
+    assert stacked([irradiance(one(light, k)) for k in range(4)]).value == pytest.approx(
+        irradiance(light).value
+    )

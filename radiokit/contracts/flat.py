@@ -30,6 +30,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _EPS = float(np.finfo(float).eps)
 _SLACK = 16 * _EPS
+_FARTHEST = 1e150  # so that squares are floats
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -170,6 +171,8 @@ class FlatEmitter(Emitter):
         What the rounding of the receiver's place takes away is given to the corners.
         """
         point, anchor = np.asarray(position, dtype=float), self.anchor
+        if np.abs(point).max() > _FARTHEST:
+            raise ParameterError("position", tuple(point.tolist()), f"within {_FARTHEST:g} m of the origin")
         origin = point - anchor
         back = origin - point
         lost = (point - (origin - back)) - (anchor + back)
@@ -180,8 +183,8 @@ class FlatEmitter(Emitter):
         if not self.blur or (value == 0.0 and abs(float(corners[0] @ self._normal)) > 4 * self.blur):
             return 0.0
         total = 0.0
-        for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-            along = b - a
+        edges = np.roll(self.offsets, -1, axis=0) - self.offsets  # far away the corners are one
+        for a, along in zip(corners, edges, strict=True):
             length = math.hypot(*along)
             share = min(1.0, max(0.0, -float(a @ along) / length / length))
             nearest = max(math.hypot(*(a + share * along)), self.blur)
@@ -193,16 +196,16 @@ class FlatEmitter(Emitter):
         scale = float(np.abs(corners).max() + np.abs(origin).max())
         if np.min(np.abs(offsets @ self._normal)) > _SLACK * scale:
             return
-        for a, b, c in offsets[self._indices]:
-            sides = [_height(p, q, self._normal) for p, q in ((a, b), (b, c), (c, a))]
+        for a, b, c in self._indices:
+            edges = ((a, b), (b, c), (c, a))
+            sides = [_height(offsets[p], self.offsets[q] - self.offsets[p], self._normal) for p, q in edges]
             if all(side >= -_SLACK * scale for side in sides):
                 place = tuple(map(float, position))
                 raise ParameterError("position", place, "away from the light, on which it lies")
 
 
-def _height(p: FloatArray, q: FloatArray, normal: FloatArray) -> float:
-    """Return how far the origin is to the left of the line from p to q, in a plane with that normal."""
-    along = q - p
+def _height(p: FloatArray, along: FloatArray, normal: FloatArray) -> float:
+    """Return how far the origin is to the left of a line through p, in a plane with that normal."""
     size = math.hypot(*along)
     return float(np.cross(p, along / size) @ normal)
 
@@ -212,6 +215,8 @@ class _View:
 
     def __init__(self, light: FlatEmitter, position: FloatArray) -> None:
         self.solid_angle = float(light.solid_angle(position).value)
+        if self.solid_angle == 0.0:
+            return  # nothing is seen: no directions are asked for
         self._by_area = light.sampling == "area"
         corners, origin = light._placed(position)
         self._offset = corners[0] - origin

@@ -33,7 +33,7 @@ class Rectangle(FlatEmitter):
     normal : tuple of 3 floats
         To where it shines; any length but 0, stored as a unit vector.
     width, height : float
-        Its sides [m], above 0.
+        Its sides [m], in [1e-100, 1e100].
     up : tuple of 3 floats, optional
         Along its height, as far as that is possible; any length but 0. Without it, the first axis of
         ``frame(normal)`` is along its width.
@@ -57,15 +57,15 @@ class Rectangle(FlatEmitter):
 
     center: tuple[float, float, float] = vector("point", "m", "its middle")
     normal: tuple[float, float, float] = vector("direction", "1", "to where it shines")
-    width: float = parameter("(0, 1e100]", "m", "side across up")
-    height: float = parameter("(0, 1e100]", "m", "side along up")
+    width: float = parameter("[1e-100, 1e100]", "m", "side across up")
+    height: float = parameter("[1e-100, 1e100]", "m", "side along up")
     up: tuple[float, float, float] | None = vector("direction", "1", "along its height", default=None)
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.up is not None and not np.sum(np.cross(self.normal, self.up) ** 2) > 1e-24:
             raise ParameterError("up", self.up, f"no vector along the normal {self.normal}")
-        sides = f"larger than the spacing of floats at {self.center}, and within 1e9 of the other side"
+        sides = f"larger than the spacing of floats at {self.center}, and within 1e13 of the other side"
         if min(self.width, self.height) <= np.spacing(np.abs(self.center).max()):
             raise ParameterError("width, height", (self.width, self.height), sides)
         try:
