@@ -285,7 +285,8 @@ DARK = {
         ("disk", {"center": (4, 0, -1), "normal": (-1, 0, 0)}, {}),
         ("polygon", {"vertices": ((2, 1, 0), (2, -1, 0), (2, -1, -1), (2, 1, -1))[::-1]}, {})],
     "of no strength": [(name, {field: 0.0}, {}) for name, field in (
-        ("point", "intensity"), ("spot", "intensity"), ("goniometric", "scale"), ("directional", "irradiance"),
+        ("point", "intensity"), ("spot", "intensity"), ("goniometric", "scale"),
+        ("directional", "irradiance"),
         ("sphere", "radiance"), ("disk", "radiance"), ("polygon", "radiance"), ("triangle", "radiance"),
         ("rectangle", "radiance"), ("constant", "radiance"), ("sky_overcast", "radiance"))],
     "a dark map": [("environment", {"radiance": np.zeros((2, 3))}, {})],

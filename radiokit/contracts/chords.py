@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from radiokit.contracts.emitter import Emitter
 from radiokit.contracts.parameters import Spectrum
-from radiokit.contracts.spectral import weighted
+from radiokit.contracts.spectral import wavelengths_of, weighted
 from radiokit.facts.estimate import Estimate, rounding
 
 __all__ = ["CapPiece", "DiskPiece"]
@@ -34,6 +34,11 @@ class _Swept(Emitter):
     radiance: Spectrum
     axes: FloatArray
     turn: float
+
+    @property
+    def wavelengths(self) -> int | None:
+        """How many its radiance has."""
+        return wavelengths_of(self.radiance)
 
     @property
     def precision(self) -> float:

@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from radiokit.contracts.emitter import Emitter
 from radiokit.contracts.parameters import Spectrum, choice, parameter
-from radiokit.contracts.spectral import amount, weighted
+from radiokit.contracts.spectral import amount, wavelengths_of, weighted
 from radiokit.facts.directions import dot
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate, rounding
@@ -283,6 +283,11 @@ class _Piece(Emitter):
     warp: UniformSphericalTriangle
     size: float
     precision: float
+
+    @property
+    def wavelengths(self) -> int | None:
+        """How many its radiance has."""
+        return wavelengths_of(self.radiance)
 
     def radiance_from(self, direction: FloatArray, position: FloatArray) -> FloatArray:
         """Return L: only its own directions are asked about."""
