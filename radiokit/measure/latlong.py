@@ -112,14 +112,25 @@ def _cut(
     middle = 0.5 * (low + high)
     pole = math.pi * (np.floor(middle / math.pi) + 0.5)
     scale = min(max(tilt_cosine / max(tilt_sine, 1e-300), 1e-17), 10.0)
-    first, last = np.arcsinh((low - pole) / scale), np.arcsinh((high - pole) / scale)
+    near, far = np.sort(np.abs(np.stack((low - pole, high - pole))), axis=0)
+    first, last = np.arcsinh(near / scale), np.arcsinh(far / scale)
     panels = np.maximum(1, np.ceil((last - first) / _PANEL)).astype(np.intp)
     span = np.repeat(np.arange(len(cell)), panels)
     index = np.arange(len(span)) - np.repeat(np.cumsum(panels) - panels, panels)
-    width = ((last - first) / panels)[span]
-    t = first[span, None] + width[:, None] * (index[:, None] + _X)
-    phi = pole[span, None] + scale * np.sinh(t)
-    weight = width[:, None] * _W * scale * np.cosh(t)
+    step = (last - first) / panels
+    # t is rounded, by much where c is tiny: distances from φ₀ bound the panels, the outermost ones exactly.
+    inner, outer = (scale * np.sinh(first[span] + k * step[span]) for k in (index, index + 1))
+    inner, outer = (
+        np.where(index == 0, near[span], inner),
+        np.where(index + 1 == panels[span], far[span], outer),
+    )
+    slant = np.hypot(scale, inner)
+    gap, rest = outer - inner, (outer + inner) / (np.hypot(scale, outer) + slant)
+    width = np.log1p(gap * (1 + rest) / (inner + slant))
+    t = width[:, None] * _X
+    distance = inner[:, None] * np.cosh(t) + slant[:, None] * np.sinh(t)
+    phi = pole[span, None] + np.sign(middle - pole)[span, None] * distance
+    weight = width[:, None] * _W * (inner[:, None] * np.sinh(t) + slant[:, None] * np.cosh(t))
     above = top[cell[span], None]
     cosine = np.cos(phi)
     edge = np.arctan2(tilt_cosine, -tilt_sine * cosine)
