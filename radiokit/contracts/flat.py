@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.contracts.emitter import Emitter
+from radiokit.contracts.emitter import Emitter, Silhouette
 from radiokit.contracts.parameters import choice, parameter
 from radiokit.facts.directions import dot
 from radiokit.facts.errors import ParameterError
@@ -22,6 +22,7 @@ from radiokit.measure.outline import area_vector, triangulate
 from radiokit.measure.sphericaltriangle import UniformSphericalTriangle
 from radiokit.measure.triangle import UniformTriangle
 from radiokit.physics import polygon
+from radiokit.physics.facets import Facets, lies_on
 
 __all__ = ["FlatEmitter"]
 
@@ -140,23 +141,21 @@ class FlatEmitter(Emitter):
         error = found.error * self.radiance + (float(np.spacing(value)) if value else 0.0)
         return Estimate(value, error, "rounding", method="closed form")
 
+    def distance_along(self, direction: FloatArray, position: FloatArray) -> FloatArray:
+        """Return how far (N,) [m] the light's plane is along directions (N, 3)."""
+        seen = Facets.seen(self.corners, position)
+        return np.full(len(direction), np.inf) if seen is None else seen.distance(direction)
+
+    def silhouette(self, position: FloatArray) -> Silhouette | None:
+        """Return the polygon, evenly bright; None where it is not seen."""
+        self._check_off(position)
+        seen = Facets.seen(self.corners, position)
+        return None if seen is None else Silhouette(seen, self.radiance)
+
     def _check_off(self, position: FloatArray) -> None:
-        offsets = self.corners - position
-        scale = float(np.abs(self.corners).max() + np.abs(position).max())
-        if np.min(np.abs(offsets @ self._normal)) > _SLACK * scale:
-            return
-        for a, b, c in self._triangles - position:
-            sides = [_height(p, q, self._normal) for p, q in ((a, b), (b, c), (c, a))]
-            if all(side >= -_SLACK * scale for side in sides):
-                place = tuple(map(float, position))
-                raise ParameterError("position", place, "away from the light, on which it lies")
-
-
-def _height(p: FloatArray, q: FloatArray, normal: FloatArray) -> float:
-    """Return how far the origin is to the left of the line from p to q, in a plane with that normal."""
-    along = q - p
-    size = math.hypot(*along)
-    return float(np.cross(p, along / size) @ normal)
+        if lies_on(self.corners, self._triangles, position):
+            place = tuple(map(float, position))
+            raise ParameterError("position", place, "away from the light, on which it lies")
 
 
 class _View:

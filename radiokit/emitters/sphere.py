@@ -4,40 +4,27 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.contracts.emitter import Emitter
+from radiokit.contracts.emitter import Emitter, Silhouette
 from radiokit.contracts.parameters import parameter
 from radiokit.contracts.vectors import vector
-from radiokit.facts.directions import frame, to_world, unit
+from radiokit.facts.directions import frame, to_world
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.facts.source import Source
-from radiokit.measure.exact import RationalVector, cross, difference, inner, rational, root
 from radiokit.measure.warps import UniformCone
-from radiokit.physics.cap import CAP_SOURCE, cap_irradiance
+from radiokit.physics.ball import Ball
+from radiokit.physics.cap import CAP_SOURCE
 
 __all__ = ["Sphere"]
 
 FloatArray = npt.NDArray[np.float64]
 
 _EPS = float(np.finfo(float).eps)
-
-
-@dataclass(frozen=True)
-class _View:
-    """A sphere from one point: the way to its centre, and sine and cosine of half its width."""
-
-    towards: RationalVector
-    square: Fraction  # the squares of the distance to the centre, and of that along a tangent
-    tangent: Fraction
-    axis: FloatArray
-    sine: float
-    cosine: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,7 +61,7 @@ class Sphere(Emitter):
 
     def radiance_from(self, direction: FloatArray, position: FloatArray) -> FloatArray:
         """Return L for directions (N, 3) that meet the sphere, 0 for the others."""
-        return np.where(self._meets(direction, self._view(position)), self.radiance, 0.0)
+        return np.where(self._view(position).near(direction), self.radiance, 0.0)
 
     def sample(self, u: FloatArray, position: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Turn uniform points (N, 2) into directions (N, 3), uniform in the cone, and densities [sr⁻¹].
@@ -89,12 +76,11 @@ class Sphere(Emitter):
     def pdf(self, direction: FloatArray, position: FloatArray) -> FloatArray:
         """Return 1/Ω in the cone and 0 outside [sr⁻¹]."""
         view = self._view(position)
-        return np.where(self._meets(direction, view), 1.0 / _cone(view), 0.0)
+        return np.where(view.near(direction), 1.0 / _cone(view), 0.0)
 
     def solid_angle(self, position: FloatArray) -> Estimate:
         """Return Ω = 4π sin²(σ/2) [sr], with sinσ = R/d: 2π for a sphere touched."""
-        value = _cone(self._view(position))
-        return Estimate(value, 8 * _EPS * value, "rounding", method="closed form")
+        return self._view(position).solid_angle()
 
     def irradiance_at(self, position: FloatArray, normal: FloatArray) -> Estimate:
         """Return E [W m⁻²] on a receiver of any tilt: πL (R/d)² cosθ, less what the horizon hides.
@@ -102,24 +88,16 @@ class Sphere(Emitter):
         Whether the horizon cuts the sphere, and by how much, is decided in rational arithmetic, so that the
         relative error is that of a few operations for every sphere and every tilt.
         """
-        view, n = self._view(position), rational(normal)
-        length, along = inner(n, n), inner(n, view.towards)
-        hidden = Fraction(self.radius) ** 2 * length - along * along
-        height = math.copysign(root(along * along / (length * view.square)), along)
-        if hidden <= 0:
-            value = math.pi * view.sine * view.sine * max(height, 0.0)
-        else:
-            aside = cross(n, view.towards)
-            value = cap_irradiance(
-                sine=view.sine,
-                cosine=view.cosine,
-                height=height,
-                offset=root(inner(aside, aside) / (length * view.square)),
-                angle=math.atan2(root(hidden * view.square), root(view.tangent * along * along)),
-                half_azimuth=math.atan2(root(hidden), root(view.tangent * length)),
-            )
-        value *= self.radiance
+        value = self.radiance * self._view(position).irradiance(normal).value
         return Estimate(value, 48 * _EPS * value, "rounding", method="closed form")
+
+    def distance_along(self, direction: FloatArray, position: FloatArray) -> FloatArray:
+        """Return how far (N,) [m] the sphere is along directions (N, 3) that meet it."""
+        return self._view(position).distance(direction)
+
+    def silhouette(self, position: FloatArray) -> Silhouette:
+        """Return the ball, evenly bright."""
+        return Silhouette(self._view(position), self.radiance)
 
     def flux(self) -> Estimate:
         """Return the radiant flux Φ = πL · 4πR² [W].
@@ -130,29 +108,17 @@ class Sphere(Emitter):
         value = 4.0 * math.pi**2 * self.radius * self.radius * self.radiance
         return Estimate(value, 4 * _EPS * value, "rounding", method="closed form")
 
-    def _view(self, position: FloatArray) -> _View:
-        towards = difference(self.center, position)
-        square = inner(towards, towards)
-        size = Fraction(self.radius) ** 2
-        if square <= size:
+    def _view(self, position: FloatArray) -> Ball:
+        ball = Ball.seen(self.center, self.radius, position)
+        if ball.tangent <= 0:
             allowed = f"outside the sphere of radius {self.radius!r} around {self.center}"
             raise ParameterError("position", tuple(map(float, position)), allowed)
-        sine = root(size / square)
-        if sine < 1e-100:
+        if ball.sine < 1e-100:
             allowed = "nearer to the sphere, which is a point light at more than 1e100 radii"
             raise ParameterError("position", tuple(map(float, position)), allowed)
-        largest = max(map(abs, towards))
-        axis = unit([float(component / largest) for component in towards])
-        return _View(towards, square, square - size, axis, sine, root((square - size) / square))
-
-    @staticmethod
-    def _meets(direction: FloatArray, view: _View) -> npt.NDArray[np.bool_]:
-        """Return which directions lie in the cone, by their distance from its axis, as samples keep it."""
-        chord = view.sine * math.sqrt(2.0 / (1.0 + view.cosine))
-        distance = np.sqrt(np.sum((direction - view.axis) ** 2, axis=1))
-        return np.asarray(distance <= chord * (1.0 + 4 * _EPS) + 2 * _EPS)
+        return ball
 
 
-def _cone(view: _View) -> float:
+def _cone(ball: Ball) -> float:
     """Return 2π (1 − cosσ)."""
-    return 2.0 * math.pi * view.sine * view.sine / (1.0 + view.cosine)
+    return float(ball.solid_angle().value)
