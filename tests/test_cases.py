@@ -527,6 +527,7 @@ def test_a_case_is_complete(item):
             item.scene.wo,
             normal=item.scene.normal,
             position=item.scene.position,
+            occluders=item.scene.occluders,
         )
         assert auto.converged
         assert auto.is_bound

@@ -48,8 +48,8 @@ class Occluder(ABC):
         """Return whether (N,) the body is met nearer than ``reach`` (N,) [m] along directions (N, 3).
 
         Whether a ray meets the body at all, its edge included, is decided without rounding. What is as far
-        as ``reach``, within 2⁻⁴⁰ of it, is not nearer: a light does not hide itself, nor does what it touches.
-        A ray in the plane of a flat body does not meet it.
+        as ``reach``, within 2⁻⁴⁰ of it, is not nearer: what touches a light, or is its own surface, hides
+        nothing there. A ray in the plane of a flat body does not meet it.
 
         Raises
         ------

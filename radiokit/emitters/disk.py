@@ -168,4 +168,3 @@ class Disk(Emitter):
 def _density(a: float, b: float, kappa: float, flat: FloatArray) -> FloatArray:
     far = math.hypot(1.0, a)
     return far / a * ((far + np.sqrt(flat)) / b) / (2.0 * np.pi * kappa)
-

@@ -1,4 +1,4 @@
-"""Circle cone: the directions from a point into a circle, in rational numbers: which, and how two cones lie."""
+"""Circle cone: the directions from a point into a circle, in rational numbers, and how two such cones lie."""
 
 from __future__ import annotations
 
@@ -52,6 +52,13 @@ class CircleCone:
     def _height(self) -> Fraction:
         return inner(self.normal, self.center)
 
+    @cached_property
+    def way(self) -> FloatArray:
+        """A vector (3,) across the circle's plane, away from the apex."""
+        largest = max(map(abs, self.normal))
+        way = np.array([float(x / largest) for x in self.normal])
+        return way if self._height > 0 else -way
+
     def level(self, w: Any) -> Any:
         """Return a number above 0 for a direction inside the cone and its opposite, and below 0 beside them.
 
@@ -75,7 +82,7 @@ class CircleCone:
         return bool(self.ahead(w) > 0 and self.level(w) >= 0)
 
     def decide(self, direction: FloatArray, outside: FloatArray, doubt: float) -> BoolArray:
-        """Return which directions (N, 3) the cone holds: where ``outside`` is within ``doubt`` of 0, exactly."""
+        """Return which directions (N, 3) the cone holds: with ``outside`` ≤ 0, or exactly if in doubt."""
         found = outside <= 0
         for k in np.flatnonzero(np.abs(outside) <= doubt):
             found[k] = self.holds(direction[k])
@@ -130,6 +137,21 @@ class CircleCone:
             return "across"
         return "around" if self.holds(other.center) else "apart"
 
+    def meetings(self, other: CircleCone) -> FloatArray:
+        """Return the unit vectors (N, 3) in which the surfaces of two cones cross, 4 at most."""
+        import mpmath
+
+        with working_precision(DIGITS):
+            p = self._harmonics(other)[0]
+            found = []
+            for root in _roots(p):
+                if abs(abs(root) - 1) < mpmath.mpf(10) ** (-DIGITS // 4):
+                    w = self._rim(mpmath.arg(root))
+                    length = mpmath.sqrt(sum(x * x for x in w))
+                    if other._seen(w)[2] > 0:
+                        found.append([float(x / length) for x in w])
+        return np.array(found).reshape(-1, 3)
+
     def _rim(self, angle: Any) -> list[Any]:
         import mpmath
 
@@ -151,7 +173,7 @@ class CircleCone:
         )
 
     def _seen(self, w: list[Any]) -> tuple[Any, Any, Any]:
-        """Return the level of a direction in mpmath's numbers, the size of its terms, and whether it is ahead."""
+        """Return the level of a direction in mpmath's numbers, the size of its terms, and if it is ahead."""
         m, c = [_real(x) for x in self.normal], [_real(x) for x in self.center]
         height, square = _real(self._height), _real(self.square)
         rise = sum(a * b for a, b in zip(m, w, strict=True))
@@ -159,11 +181,14 @@ class CircleCone:
         offset = sum((height * a - rise * b) ** 2 for a, b in zip(w, c, strict=True))
         return inside - offset, inside + offset, rise if height > 0 else -rise
 
-    def _turns(self, other: CircleCone) -> list[Any]:
-        """Return the angles along this rim at which the other's level is largest and least, and some more."""
+    def _harmonics(self, other: CircleCone) -> tuple[list[Any], list[Any]]:
+        """Return the other's level along this rim as a polynomial in t = e^{iφ}, and its derivative's.
+
+        The level is a₀ + a₁ cosφ + b₁ sinφ + a₂ cos2φ + b₂ sin2φ, which 8 values give.
+        """
         import mpmath
 
-        places = [mpmath.pi * k / 4 for k in range(8)]
+        places = _eighths()
         levels = [other._seen(self._rim(angle))[0] for angle in places]
         size = max(map(abs, levels)) or mpmath.mpf(1)
 
@@ -172,17 +197,33 @@ class CircleCone:
 
         a1, b1 = moment(1, mpmath.cos), moment(1, mpmath.sin)
         a2, b2 = moment(2, mpmath.cos), moment(2, mpmath.sin)
-        # p' = 0 with t = e^{iφ}: a quartic whose roots of length 1 are the extremes
-        p = [mpmath.mpc(b2, a2), mpmath.mpc(b1, a1) / 2, 0, mpmath.mpc(b1, -a1) / 2, mpmath.mpc(b2, -a2)]
-        tiny = mpmath.mpf(10) ** (-DIGITS + 4)
-        while p and abs(p[0]) < tiny:
-            p = p[1:]
-        while p and abs(p[-1]) < tiny:
-            p = p[:-1]
-        if len(p) < 2:
-            return places
-        roots = mpmath.polyroots(p, maxsteps=200, extraprec=200, error=False)
-        return places + [mpmath.arg(root) for root in roots]
+        p2, p1, mean = mpmath.mpc(a2, -b2) / 2, mpmath.mpc(a1, -b1) / 2, moment(0, mpmath.cos) / 2
+        value = [p2, p1, mean, mpmath.conj(p1), mpmath.conj(p2)]
+        return value, [2 * p2, p1, mpmath.mpc(0), -mpmath.conj(p1), -2 * mpmath.conj(p2)]
+
+    def _turns(self, other: CircleCone) -> list[Any]:
+        """Return the angles along this rim at which the other's level is largest and least, and some more."""
+        import mpmath
+
+        return _eighths() + [mpmath.arg(root) for root in _roots(self._harmonics(other)[1])]
+
+
+def _eighths() -> list[Any]:
+    import mpmath
+
+    return [mpmath.pi * k / 4 for k in range(8)]
+
+
+def _roots(p: list[Any]) -> list[Any]:
+    """Return the roots of a polynomial, whose ends may be 0."""
+    import mpmath
+
+    tiny = mpmath.mpf(10) ** (4 - DIGITS)
+    while p and abs(p[0]) < tiny:
+        p = p[1:]
+    while p and abs(p[-1]) < tiny:
+        p = p[:-1]
+    return list(mpmath.polyroots(p, maxsteps=200, extraprec=200, error=False)) if len(p) > 1 else []
 
 
 def _real(x: Fraction) -> Any:

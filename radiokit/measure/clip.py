@@ -1,4 +1,4 @@
-"""Clip: convex cones of directions, cut by planes and by each other in rational numbers: nothing is rounded."""
+"""Clip: convex cones of directions, cut by planes and by each other in rational numbers, without rounding."""
 
 from __future__ import annotations
 

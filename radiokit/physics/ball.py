@@ -1,4 +1,4 @@
-"""Ball: a sphere from one point, inside or outside: what it hides, how far it is, what it sends if it shines."""
+"""Ball: a sphere from one point, inside or outside: what it hides, how far it is, what it sends."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ class Ball:
         return self.cone.decide(direction, self._chords(direction) - chord, 16 * _EPS * (1.0 + chord))
 
     def distance(self, direction: FloatArray) -> FloatArray:
-        """Return how far (N,) the sphere is along unit vectors (N, 3) that meet it, as for tangents at its rim.
+        """Return how far (N,) the sphere is along unit vectors (N, 3) that meet it, if only by rounding.
 
         From t² − 2bt + (d² − R²) = 0, whose nearer root is the last term over the farther one.
         """

@@ -1,4 +1,4 @@
-"""Eclipse: how a body in front of a light lies to it, as one point sees them: beside, within, before, behind."""
+"""Eclipse: how a body and a light lie to each other, seen from one point: beside, within, before, behind."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from radiokit.physics.plate import Plate
 __all__ = ["TIE", "Body", "Dome", "Relation", "before", "order", "place", "relation"]
 
 TIE = Fraction(1, 2**40)
-"""What is nearer than a light by less than this share of the distance is at the light, and hides none of it."""
+"""What is nearer than a light by less than this share of the distance is at the light, and hides nothing."""
 
 Order = Literal["nearer", "farther", "mixed"]
 Relation = Place | Literal["unsure"]
@@ -24,7 +24,7 @@ Relation = Place | Literal["unsure"]
 
 @dataclass(frozen=True, eq=False)
 class Dome:
-    """The directions of an environment: those within all half-spaces around ``normals``; all if there is none."""
+    """The directions of an environment: those in all half-spaces around ``normals``, all if there is none."""
 
     normals: tuple[RationalVector, ...] = ()
 
@@ -48,13 +48,18 @@ def place(body: Body, light: Body | Dome) -> Place:
     if isinstance(body, Facets) and isinstance(light, Facets):
         return _facets(body, light)
     if isinstance(body, Facets):
-        return _OTHERWISE[_round_in_facets(light, body)]  # type: ignore[arg-type]
+        return _TURNED[_round_in_facets(light, body)]  # type: ignore[arg-type]
     if isinstance(light, Facets):
         return _round_in_facets(body, light)
     return body.cone.to_circle(light.cone)
 
 
-_OTHERWISE: dict[Place, Place] = {"within": "around", "around": "within", "apart": "apart", "across": "across"}
+_TURNED: dict[Place, Place] = {
+    "within": "around",
+    "around": "within",
+    "apart": "apart",
+    "across": "across",
+}
 
 
 def _in_dome(body: Body, light: Dome) -> Place:
@@ -127,9 +132,8 @@ def order(body: Body, light: Body | Dome) -> Order:
         if _holds(body, light):
             return "farther"
         return "nearer" if _clear_of(body, light) else "mixed"
-    if isinstance(body, Ball) and isinstance(light, Ball):
-        if (body.towards, body.radius) == (light.towards, light.radius):
-            return "farther"
+    if isinstance(body, Ball) and isinstance(light, Ball) and _bounds(body) == _bounds(light):
+        return "farther"
     if not isinstance(light, Ball):
         q, k = _plane(light)
         low, high = _sides(body, q, k * (1 - TIE))
@@ -167,7 +171,7 @@ def _bounds(body: Body) -> tuple[RationalVector, Fraction]:
     if isinstance(body, Plate):
         return body.center, body.size
     n = len(body.outline)
-    x, y, z = (sum(p[k] for p in body.outline) / n for k in range(3))
+    x, y, z = (sum((p[k] for p in body.outline), Fraction(0)) / n for k in range(3))
     farthest = max(_between((x, y, z), p) for p in body.outline)
     return (x, y, z), Fraction(float(farthest) ** 0.5) * (1 + TIE)
 
@@ -220,9 +224,8 @@ def _clear_of(ball: Ball, body: Body) -> bool:
     return any(_sides(ball, q, k))
 
 
-
 def relation(body: Body, light: Body | Dome) -> Relation:
-    """Return how a body lies before a light: ``apart`` where it hides nothing, ``unsure`` where none can tell.
+    """Return how a body lies before a light: ``apart`` if it hides nothing, ``unsure`` if that is not known.
 
     A polygon that pierces a flat light's plane counts by its nearer part.
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -94,7 +95,7 @@ class Facets:
         return all(inner(side, (x, y, z)) >= 0 for side in sides(part))
 
     def distance(self, direction: FloatArray) -> FloatArray:
-        """Return how far (N,) the polygon's plane is along directions (N, 3); infinite where it is not ahead."""
+        """Return how far (N,) the polygon's plane is along directions (N, 3); infinite if it is not ahead."""
         q, k = self.plane
         largest = max(map(abs, q))
         along = direction @ np.array([float(x / largest) for x in q])
@@ -139,7 +140,7 @@ def _plane(points: Cone) -> tuple[RationalVector, Fraction]:
     """Return the area vector of a polygon, twice as long, and its product with the first corner."""
     a = points[0]
     x = y = z = Fraction(0)
-    for b, c in zip(points[1:], points[2:], strict=False):
+    for b, c in pairwise(points[1:]):
         u, v, w = cross((b[0] - a[0], b[1] - a[1], b[2] - a[2]), (c[0] - a[0], c[1] - a[1], c[2] - a[2]))
         x, y, z = x + u, y + v, z + w
     return (x, y, z), inner((x, y, z), a)

@@ -1,4 +1,4 @@
-"""Lit parts: what polygons leave of a polygon or a sky, as convex cones in rational numbers, and their light."""
+"""Lit parts: what polygons leave of a polygon or a sky, as convex cones in rational numbers; its light."""
 
 from __future__ import annotations
 

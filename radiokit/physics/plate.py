@@ -1,4 +1,4 @@
-"""Plate: a flat disk from one point off its plane: what it hides, how far it is, what it sends if it shines."""
+"""Plate: a flat disk from one point off its plane: what it hides, how far it is, what it sends."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ class Plate:
         return self.cone.decide(direction, np.hypot(x / a, y / b) - z, doubt)
 
     def distance(self, direction: FloatArray) -> FloatArray:
-        """Return how far (N,) the disk's plane is along unit vectors (N, 3); infinite where it is not ahead."""
+        """Return how far (N,) the disk's plane is along unit vectors (N, 3); infinite if it is not ahead."""
         normal = np.array([float(x) for x in self.normal])
         facing = -(direction @ normal) / math.sqrt(normal @ normal)
         depth = self.view.depth * float(self.unit)
