@@ -6,6 +6,7 @@ import operator
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, reduce
+from itertools import combinations
 from typing import Any, ClassVar
 
 import numpy as np
@@ -18,6 +19,7 @@ from radiokit.facts.estimate import Estimate
 from radiokit.measure.circlecone import CircleCone
 from radiokit.measure.clip import Cone, sides
 from radiokit.measure.exact import RationalVector, rational
+from radiokit.measure.lattice import kronecker
 from radiokit.measure.lunes import Region
 from radiokit.physics.ball import Ball
 from radiokit.physics.eclipse import Body, Dome, Relation, place, relation
@@ -66,9 +68,8 @@ class Shadowed(Emitter):
     >>> from radiokit.contracts.occluder import occluder
     >>> sky, ball = emitter("constant"), occluder("sphere", center=(0, 0, 2), radius=1)
     >>> seen = Shadowed(light=sky, occluders=(ball,))
-    >>> round(
-    ...     float(seen.irradiance_at(np.zeros(3), np.array([0.0, 0.0, 1.0])).value) / np.pi, 14
-    ... )  # less (R/d)²
+    >>> left = seen.irradiance_at(np.zeros(3), np.array([0.0, 0.0, 1.0]))
+    >>> round(float(left.value) / np.pi, 14)  # 1 − (R/d)²
     0.75
     """
 
@@ -391,20 +392,39 @@ def _positive(side: RationalVector, w: RationalVector) -> bool:
 def _pierced(
     planes: Sequence[RationalVector], cone: CircleCone | None, axis: FloatArray, holes: Sequence[Ball | Plate]
 ) -> list[Patch] | None:
-    """Return patches between planes and within a cone, outside of round holes that lie apart."""
-    if len(holes) < 2:
-        hole = holes[0].cone if holes else None
-        region = Region(_axis(holes[0]) if holes else axis, planes, cone, hole)
-        return list(region.arcs)
-    plane = _between(holes[0], holes[1])
-    if plane is None:
-        return None
-    halves = []
-    for sign in (1, -1):
-        side = (sign * plane[0], sign * plane[1], sign * plane[2])
-        left = [hole for hole in holes if hole.cone.to_half_space(side) != "apart"]
-        halves.append(_pierced([*planes, side], cone, axis, left))
-    return _joined(halves)
+    """Return patches between planes and within a cone, outside of round holes.
+
+    Planes part holes that lie apart; those that overlap must have a direction in common.
+    """
+    for first, second in combinations(holes, 2):
+        plane = _between(first, second)
+        if plane is None:
+            continue
+        halves = []
+        for sign in (1, -1):
+            side = (sign * plane[0], sign * plane[1], sign * plane[2])
+            left = [hole for hole in holes if hole.cone.to_half_space(side) != "apart"]
+            halves.append(_pierced([*planes, side], cone, axis, left))
+        return _joined(halves)
+    middle = _common(holes) if holes else axis
+    return None if middle is None else list(Region(middle, planes, cone, [hole.cone for hole in holes]).arcs)
+
+
+def _common(holes: Sequence[Ball | Plate]) -> FloatArray | None:
+    """Return a direction inside of all of these cones, if one is found."""
+    axes = np.array([_axis(hole) for hole in holes])
+    for weights in (np.ones(len(axes)), *np.eye(len(axes)), *(np.eye(len(axes)) + 0.2), *_mixed(axes)):
+        middle = weights @ axes
+        size = float(np.sqrt(middle @ middle))
+        if size > 0 and all(hole.cone.holds(middle / size) for hole in holes):
+            return np.asarray(middle / size)
+    return None
+
+
+def _mixed(axes: FloatArray) -> FloatArray:
+    """Return weights (N, K), the evenly spread ones of K axes."""
+    weights = kronecker(64, max(len(axes), 2))[:, : len(axes)]
+    return np.asarray(weights / weights.sum(axis=1)[:, None])
 
 
 def _axis(body: Ball | Plate) -> FloatArray:

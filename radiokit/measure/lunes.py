@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
+from itertools import combinations, pairwise
 from typing import Any
 
 import numpy as np
@@ -26,7 +26,7 @@ _SAME = 1e-12  # azimuths that are nearer than this to each other bound nothing
 
 @dataclass(frozen=True, eq=False)
 class Region:
-    """The directions on the positive side of all ``planes``, within ``cone``, and outside of ``hole``.
+    """The directions on the positive side of all ``planes``, within ``cone``, and outside of ``holes``.
 
     They are described by the angle θ from an ``axis`` and the azimuth φ about it. In a half-plane of azimuth
     each of them leaves an interval of θ, the ends of which are smooth functions of φ, except where another
@@ -35,14 +35,15 @@ class Region:
     Parameters
     ----------
     axis : ndarray, shape (3,)
-        A unit vector, inside the hole if there is one.
+        A unit vector, inside all the holes, which therefore have a point in common.
     planes : sequence of rational vectors
         Normals of half-spaces.
-    cone, hole : CircleCone, optional
+    cone : CircleCone, optional
+    holes : sequence of CircleCone
 
     >>> from fractions import Fraction
     >>> up = rational((0, 0, 1))
-    >>> sky = Region(np.array([0.0, 0.0, 1.0]), [up], hole=CircleCone(up, up, Fraction(1, 3)))
+    >>> sky = Region(np.array([0.0, 0.0, 1.0]), [up], holes=[CircleCone(up, up, Fraction(1, 3))])
     >>> round(sum(arc.size for arc in sky.arcs) / np.pi, 14)  # 2 cos 30°
     1.73205080756888
     """
@@ -50,7 +51,7 @@ class Region:
     axis: FloatArray
     planes: Sequence[RationalVector]
     cone: CircleCone | None = None
-    hole: CircleCone | None = None
+    holes: Sequence[CircleCone] = ()
 
     @cached_property
     def frame(self) -> FloatArray:
@@ -69,8 +70,12 @@ class Region:
 
     @cached_property
     def _forms(self) -> list[FloatArray]:
-        """The quadratic forms (3, 3) of the cone and the hole in the frame, which are above 0 inside."""
-        return [self._form(c) for c in (self.cone, self.hole) if c is not None]
+        """The quadratic forms (3, 3) of the cone and the holes in the frame, which are above 0 inside."""
+        return [self._form(cone) for cone in self._cones]
+
+    @property
+    def _cones(self) -> list[CircleCone]:
+        return [*([] if self.cone is None else [self.cone]), *self.holes]
 
     def _form(self, cone: CircleCone) -> FloatArray:
         rows = [rational(row) for row in self.frame]
@@ -92,12 +97,12 @@ class Region:
                 high = np.minimum(high, np.arctan2(z, -across))
             else:
                 low = np.maximum(low, np.arctan2(-z, across))
-        for cone, form in zip((k for k in (self.cone, self.hole) if k is not None), self._forms, strict=True):
+        for cone, form in zip(self._cones, self._forms, strict=True):
             first, last = self._crossings(cone, form, c, s)
-            if cone is self.hole:
-                low = np.maximum(low, last)
-            else:
+            if cone is self.cone:
                 low, high = np.maximum(low, first), np.minimum(high, last)
+            else:
+                low = np.maximum(low, last)
         return low, high
 
     def _crossings(
@@ -154,8 +159,8 @@ class Region:
         for form in forms:
             if form[2, 2] < 0:  # the axis is outside
                 found += _zeros(np.outer(form[2, :2], form[2, :2]) - form[2, 2] * form[:2, :2])
-        if self.cone is not None and self.hole is not None:
-            for w in self.hole.meetings(self.cone):
+        for cone, other in combinations(self._cones, 2):
+            for w in other.meetings(cone):
                 x, y, _ = self.frame @ w
                 found.append(float(np.arctan2(y, x)))
         return found

@@ -162,7 +162,7 @@ def _over_piece(
 
 
 def _scattered(integrand: Callable[[FloatArray], Any]) -> Estimate:
-    """Integrate over a light through which a shadow's edge runs: a lattice tells its value, no rule a bound."""
+    """Integrate over a light through which the edge of a shadow runs, by shifted lattices."""
     found = lowdiscrepancy.mean(integrand, dimensions=2, samples=_SCATTERED, rng=0)
     return replace(
         found,
