@@ -18,7 +18,7 @@ from radiokit.contracts.piece import Patch, Piece, fan, tilted
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.circlecone import CircleCone
 from radiokit.measure.clip import Cone, sides
-from radiokit.measure.exact import RationalVector, rational
+from radiokit.measure.exact import RationalVector, cross, inner, rational
 from radiokit.measure.lattice import kronecker
 from radiokit.measure.lunes import Region
 from radiokit.physics.ball import Ball
@@ -253,14 +253,17 @@ class _Sight:
         return [(body, how) for body, how in self.placed if not isinstance(body, Facets)]
 
     def above(self, normal: FloatArray) -> _Sight:
-        """Return the same without the bodies that are wholly below a receiver's horizon."""
-        horizon = Dome((rational(normal),))
-        kept = tuple(pair for pair in self.placed if place(pair[0], horizon) != "apart")
-        return (
-            self
-            if len(kept) == len(self.placed)
-            else _Sight(self.light, self.position, self.silhouette, kept)
-        )
+        """Return the same without the bodies that are wholly below a receiver's horizon.
+
+        A sky's own horizon does not count where it is the receiver's.
+        """
+        up, silhouette = rational(normal), self.silhouette
+        kept = [pair for pair in self.placed if place(pair[0], Dome((up,))) != "apart"]
+        if silhouette is not None and isinstance(silhouette.body, Dome):
+            others = [n for n in silhouette.body.normals if any(cross(n, up)) or inner(n, up) < 0]
+            silhouette = replace(silhouette, body=Dome(tuple(others)))
+            kept = [(body, relation(body, silhouette.body)) for body, _ in kept]
+        return _Sight(self.light, self.position, silhouette, tuple(kept))
 
     # --- closed forms ---
 

@@ -141,7 +141,7 @@ def over_light(
         return _scattered(partial(integrand, light))
     if not pieces:
         nothing = np.zeros_like(np.asarray(integrand(light, np.full((1, 2), 0.5)))[0])[()]
-        return Estimate(nothing, nothing, "truncation", 1, method="none of the light is above the horizon")
+        return Estimate(nothing, nothing, "truncation", 1, method="none of the light is seen")
     found = [_over_piece(partial(integrand, piece), piece, receiver, rtol) for piece in pieces]
     return reduce(operator.add, found)
 
