@@ -33,9 +33,6 @@ FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
 
 _EPS = float(np.finfo(float).eps)
-_DIGITS = 1e-9
-"""A difference that is known to fewer digits than this is left to quadrature over what is lit."""
-
 _NOTHING = Estimate(0.0, 0.0, "rounding", method="closed form")
 
 
@@ -291,9 +288,7 @@ class _Sight:
             if isinstance(light, Facets | Dome) and self.facets:
                 cones = [cone for up in _BOTH for cone in lit_parts(light, self.facets, up)]
                 whole = cones_solid_angle(cones)
-            found = _less(whole, [body.solid_angle() for body in hidden])
-            if found is not None:
-                return found
+            return _less(whole, [body.solid_angle() for body in hidden])
         halves = [self.above(up).patches(up) for up in _BOTH]
         if any(half is None for half in halves):
             return None
@@ -345,16 +340,14 @@ def _times(found: Estimate, radiance: float) -> Estimate:
     return replace(found, value=value, error=found.error * radiance + 2 * _EPS * value)
 
 
-def _less(whole: Estimate, hidden: Sequence[Estimate]) -> Estimate | None:
-    """Return what is left, with the bounds of all terms; None where they leave too few digits."""
+def _less(whole: Estimate, hidden: Sequence[Estimate]) -> Estimate:
+    """Return what is left, with the bounds of all terms: they say how much of it has cancelled."""
     if not hidden:
         return whole
     taken = reduce(operator.add, hidden)
     value = whole.value - taken.value
     error = whole.error + taken.error + (len(hidden) + 1) * _EPS * (whole.value + taken.value)
-    if error > _DIGITS * value:
-        return None
-    return replace(whole + taken, value=value, error=error)
+    return replace(whole + taken, value=max(value, 0.0), error=error)
 
 
 def _joined(parts: Any) -> list[Patch] | None:
