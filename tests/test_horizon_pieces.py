@@ -11,7 +11,7 @@ import pytest
 from mpmath import mpf
 
 from radiokit.contracts.bsdf import bsdf
-from radiokit.contracts.chords import CapPiece, DiskPiece
+from radiokit.contracts.chords import CapPatch, DiskPatch
 from radiokit.emitters.disk import Disk
 from radiokit.emitters.rectangle import Rectangle
 from radiokit.emitters.sphere import Sphere
@@ -64,7 +64,7 @@ def test_what_is_left_of_a_cut_light_is_smooth(name):
         exact.value, rel=1e-6 if "sliver" in name or "tiny" in name else 1e-12
     )
     (piece,) = light.pieces(ORIGIN, np.array(UP))
-    assert isinstance(piece, CapPiece if isinstance(light, Sphere) else DiskPiece)
+    assert isinstance(piece.patch, CapPatch if isinstance(light, Sphere) else DiskPatch)
     x = np.linspace(0, 1, 9)
     wi, density = piece.sample(np.stack(np.meshgrid(x, x), axis=-1).reshape(-1, 2), ORIGIN)
     assert np.abs(np.linalg.norm(wi, axis=1) - 1).max() < 1e-15
@@ -94,7 +94,9 @@ def test_pieces_of_lights_of_any_pose(kind, rng):
 def test_a_planted_wrong_piece_is_found():
     light = CUT["sphere below"]
     (piece,) = light.pieces(ORIGIN, np.array(UP))
-    wrong = dataclasses.replace(piece, turn=piece.turn * (1 + 1e-7))
+    wrong = dataclasses.replace(
+        piece, patch=dataclasses.replace(piece.patch, turn=piece.patch.turn * (1 + 1e-7))
+    )
     exact = light.irradiance_at(ORIGIN, np.array(UP)).value
     x, w = np.polynomial.legendre.leggauss(40)
     u = np.stack(np.meshgrid(0.5 * (x + 1), 0.5 * (x + 1), indexing="ij"), axis=-1).reshape(-1, 2)

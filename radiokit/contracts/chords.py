@@ -8,49 +8,38 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.contracts.emitter import Emitter
-from radiokit.contracts.parameters import Spectrum
-from radiokit.contracts.spectral import wavelengths_of, weighted
-from radiokit.facts.estimate import Estimate, rounding
-
-__all__ = ["CapPiece", "DiskPiece"]
+__all__ = ["CapPatch", "DiskPatch"]
 
 FloatArray = npt.NDArray[np.float64]
 
-_EPS = float(np.finfo(float).eps)
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Swept(Emitter):
+class _Swept:
     """A part of a round light; directions are made along (chord, level, up), the rows of ``axes``."""
 
-    name: ClassVar[str] = "piece"
-
-    radiance: Spectrum
     axes: FloatArray
     turn: float
 
     @property
-    def wavelengths(self) -> int | None:
-        """How many its radiance has."""
-        return wavelengths_of(self.radiance)
-
-    @property
     def precision(self) -> float:
-        """What rounding does to the heights: a direction is known to an eps, and so is a small cosine."""
-        direction, _ = self.sample(np.array([[0.5, 0.5]]), np.zeros(3))
-        return 8 * _EPS / max(float(direction[0] @ self.axes[2]), _EPS)
+        """What rounding does beside that of the directions: nothing."""
+        return 0.0
 
-    def solid_angle(self, position: FloatArray) -> Estimate:
-        """Return the solid angle [sr], roughly."""
+    @cached_property
+    def size(self) -> float:
+        """The solid angle [sr], roughly."""
         x, w = np.polynomial.legendre.leggauss(32)
         u = np.stack((0.5 * (x + 1), np.full_like(x, 0.5)), axis=-1)
-        return rounding(float(np.sum(0.5 * w / self.sample(u, position)[1])))
+        return float(np.sum(0.5 * w / self.sample(u)[1]))
+
+    def sample(self, u: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return directions (N, 3) and their densities (N,) [sr⁻¹]."""
+        raise NotImplementedError
 
     def _directions(self, along: FloatArray, level: FloatArray, up: FloatArray) -> FloatArray:
         across = np.sqrt((1.0 - along) * (1.0 + along))
@@ -58,7 +47,7 @@ class _Swept(Emitter):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class CapPiece(_Swept):
+class CapPatch(_Swept):
     """The part above the horizon of a circular cone of directions.
 
     With x the angle of the half-plane from the cone's axis, sin x = sinσ cos y makes the cone's edge smooth
@@ -66,8 +55,6 @@ class CapPiece(_Swept):
 
     Parameters
     ----------
-    radiance : float, or tuple of K floats
-        [W m⁻² sr⁻¹]
     axes : ndarray, shape (3, 3)
         Along the chord, level to the cone's side, and up.
     turn : float
@@ -79,11 +66,7 @@ class CapPiece(_Swept):
     sine: float
     cosine: float
 
-    def radiance_from(self, direction: FloatArray, position: FloatArray) -> FloatArray:
-        """Return L: only its own directions are asked about."""
-        return weighted(np.ones(len(direction)), self.radiance)
-
-    def sample(self, u: FloatArray, position: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def sample(self, u: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return directions (N, 3) and their densities (N,) [sr⁻¹]."""
         y, s, c = self.turn * u[:, 0], self.sine, self.cosine
         x_sine, x_cosine = s * np.cos(y), np.hypot(c, s * np.sin(y))
@@ -99,34 +82,26 @@ class CapPiece(_Swept):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class DiskPiece(_Swept):
-    """The part above the horizon of a disk, whose radiance may fall as a power of the cosine.
+class DiskPatch(_Swept):
+    """The part above the horizon of a disk.
 
     Parameters
     ----------
-    radiance, axes, turn
-        As in ``CapPiece``; ``turn`` is about the disk's centre.
-    exponent : float
-        n of radiance ∝ cosⁿ of the angle of emission.
+    axes, turn
+        As in ``CapPatch``; ``turn`` is about the disk's centre.
     radius, depth, aside : float
         R, the distance a of the disk's plane, and that of its centre along the chord; in any one unit.
     slope, facing : float
         Sine and cosine of the angle between up and the way across to the disk's plane.
     """
 
-    exponent: float
     radius: float
     depth: float
     aside: float
     slope: float
     facing: float
 
-    def radiance_from(self, direction: FloatArray, position: FloatArray) -> FloatArray:
-        """Return L cosⁿ: only its own directions are asked about."""
-        emission = self.facing * (direction @ self.axes[2]) + self.slope * (direction @ self.axes[1])
-        return weighted(np.maximum(emission, 0.0) ** self.exponent, self.radiance)
-
-    def sample(self, u: FloatArray, position: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def sample(self, u: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return directions (N, 3) and their densities (N,) [sr⁻¹]."""
         y = self.turn * u[:, 0]
         rise = 2 * self.radius * np.sin(0.5 * (self.turn - y)) * np.sin(0.5 * (self.turn + y))

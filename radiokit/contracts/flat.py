@@ -12,17 +12,19 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.contracts.emitter import Emitter
+from radiokit.contracts.emitter import Emitter, Silhouette
 from radiokit.contracts.parameters import Spectrum, choice, parameter
-from radiokit.contracts.spectral import amount, wavelengths_of, weighted
+from radiokit.contracts.piece import Piece, TrianglePatch, tilted
+from radiokit.contracts.spectral import amount, weighted
 from radiokit.facts.directions import dot
 from radiokit.facts.errors import ParameterError
-from radiokit.facts.estimate import Estimate, rounding
+from radiokit.facts.estimate import Estimate
 from radiokit.facts.source import Source
 from radiokit.measure.outline import area_vector, triangulate
 from radiokit.measure.sphericaltriangle import UniformSphericalTriangle
 from radiokit.measure.triangle import UniformTriangle
 from radiokit.physics import polygon
+from radiokit.physics.facets import Facets
 
 __all__ = ["FlatEmitter"]
 
@@ -123,16 +125,15 @@ class FlatEmitter(Emitter):
             part = np.array(polygon.above((triangle - origin).tolist(), normal.tolist()))
             for k in range(1, len(part) - 1):
                 warp = UniformSphericalTriangle(vertices=part[[0, k, k + 1]])
-                size = warp.solid_angle
-                # A direction is known to an eps, and so is a cosine, however small it is.
-                middle = warp.sample(np.array([[0.5, 0.5]]))[0]
-                precision = 8 * _EPS / max(float(middle @ normal), _EPS)
+                size, precision = warp.solid_angle, 0.0
                 if len(part) == 3 and np.array_equal(part, triangle - origin):
                     size = float(polygon.solid_angle(triangle, origin).value)  # with all its digits
                 elif size > 0.0:  # where the horizon cuts is rounded
-                    precision += 8 * _EPS * warp.perimeter / size
+                    precision = 8 * _EPS * warp.perimeter / size
                 if size > 0.0:
-                    found.append(_Piece(radiance=self.radiance, warp=warp, size=size, precision=precision))
+                    patch = TrianglePatch(warp, size, precision)
+                    loss = tilted(patch, normal)
+                    found.append(Piece(light=self, patch=patch, radiance=self.radiance, precision=loss))
         return found
 
     def solid_angle(self, position: FloatArray) -> Estimate:
@@ -191,6 +192,16 @@ class FlatEmitter(Emitter):
             total += min(length / nearest, math.pi) / nearest
         return self.blur * total
 
+    def distance_along(self, direction: FloatArray, position: FloatArray) -> FloatArray:
+        """Return how far (N,) [m] the light's plane is along directions (N, 3)."""
+        seen = _view(self, _key(position)).facets
+        return np.full(len(direction), np.inf) if seen is None else seen.distance(direction)
+
+    def silhouette(self, position: FloatArray) -> Silhouette | None:
+        """Return the polygon, evenly bright; None where it is not seen."""
+        seen = _view(self, _key(position)).facets
+        return None if seen is None else Silhouette(seen, self.radiance)
+
     def _check_off(self, corners: FloatArray, origin: FloatArray, position: FloatArray) -> None:
         offsets = corners - origin
         scale = float(np.abs(corners).max() + np.abs(origin).max())
@@ -215,10 +226,11 @@ class _View:
 
     def __init__(self, light: FlatEmitter, position: FloatArray) -> None:
         self.solid_angle = float(light.solid_angle(position).value)
+        self._corners, self._origin = light._placed(position)
         if self.solid_angle == 0.0:
             return  # nothing is seen: no directions are asked for
         self._by_area = light.sampling == "area"
-        corners, origin = light._placed(position)
+        corners, origin = self._corners, self._origin
         self._offset = corners[0] - origin
         self._normal = light._normal
         self._area = light.area
@@ -240,6 +252,11 @@ class _View:
         total = max(math.fsum(shares), 5e-324)
         self._steps = np.concatenate([[0.0], np.cumsum(shares) / total])
         self._steps[-1] = 1.0
+
+    @cached_property
+    def facets(self) -> Facets | None:
+        """The polygon in rational numbers; None where it is not seen."""
+        return Facets.seen(self._corners, self._origin)
 
     def hit(self, direction: FloatArray) -> npt.NDArray[np.bool_]:
         """Return whether directions (N, 3) meet the front, with its edges and a few units of rounding."""
@@ -271,38 +288,6 @@ class _View:
         with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
             density = height * height / (self._area * cosine**3)
         return np.where(cosine > 0, np.nan_to_num(density, posinf=np.finfo(float).max), 0.0)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Piece(Emitter):
-    """A triangle above the horizon, with a map of the square that is smooth, for quadrature."""
-
-    name: ClassVar[str] = "piece"
-
-    radiance: Spectrum
-    warp: UniformSphericalTriangle
-    size: float
-    precision: float
-
-    @property
-    def wavelengths(self) -> int | None:
-        """How many its radiance has."""
-        return wavelengths_of(self.radiance)
-
-    def radiance_from(self, direction: FloatArray, position: FloatArray) -> FloatArray:
-        """Return L: only its own directions are asked about."""
-        return weighted(np.ones(len(direction)), self.radiance)
-
-    def sample(self, u: FloatArray, position: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return directions and densities; the square on the second number smooths the root at its corner."""
-        direction = self.warp.sample(np.stack((u[:, 0], u[:, 1] ** 2), axis=-1))
-        with np.errstate(divide="ignore"):
-            density = 1 / (2 * u[:, 1] * self.size)
-        return direction, density
-
-    def solid_angle(self, position: FloatArray) -> Estimate:
-        """Return the solid angle [sr]."""
-        return rounding(self.size)
 
 
 def _key(position: Any) -> tuple[float, ...]:

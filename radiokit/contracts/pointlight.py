@@ -62,6 +62,11 @@ class PointLight(Emitter):
         direction, normal_irradiance, _ = self._arriving(position)
         return direction[None, :], np.array([normal_irradiance])
 
+    def distance_along(self, direction: FloatArray, position: FloatArray) -> FloatArray:
+        """Return how far (N,) [m] the light is, whatever the direction (N, 3)."""
+        distance = math.hypot(*(p - float(q) for p, q in zip(self.position, position, strict=True)))
+        return np.full(len(direction), distance)
+
     def solid_angle(self, position: FloatArray) -> Estimate:
         """Return 0 sr: a point subtends no solid angle."""
         return rounding(0.0, ulps=0)

@@ -9,12 +9,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.contracts.emitter import Emitter
+from radiokit.contracts.emitter import Emitter, Silhouette
 from radiokit.contracts.spectral import stacked
 from radiokit.contracts.vectors import Triple
 from radiokit.facts.directions import angle_between, frame, to_world
 from radiokit.facts.estimate import Estimate, rounding
 from radiokit.measure.cancelling import sine_minus_x_cosine
+from radiokit.measure.exact import rational
+from radiokit.physics.eclipse import Dome
 
 __all__ = ["CosineSky"]
 
@@ -54,6 +56,10 @@ class CosineSky(Emitter):
     def dome(self, position: FloatArray) -> tuple[FloatArray, ...]:
         """Return the half-space that the sky fills."""
         return (np.array(self.normal),)
+
+    def silhouette(self, position: FloatArray) -> Silhouette:
+        """Return the half-space that the sky fills."""
+        return Silhouette(Dome((rational(self.normal),)), None)
 
     def radiance_from(self, direction: FloatArray, position: FloatArray) -> FloatArray:
         """Return L for directions (N, 3) in the sky, 0 for those below its horizon."""

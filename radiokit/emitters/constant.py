@@ -9,14 +9,16 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.contracts.emitter import Emitter
+from radiokit.contracts.emitter import Emitter, Silhouette
 from radiokit.contracts.parameters import Spectrum, parameter
 from radiokit.contracts.spectral import amount, weighted
 from radiokit.contracts.vectors import vector
 from radiokit.facts.directions import frame, to_world
 from radiokit.facts.estimate import Estimate, rounding
 from radiokit.facts.source import Source
+from radiokit.measure.exact import rational
 from radiokit.measure.warps import UniformHemisphere, UniformSphere
+from radiokit.physics.eclipse import Dome
 
 __all__ = ["Constant"]
 
@@ -67,6 +69,10 @@ class Constant(Emitter):
     def dome(self, position: FloatArray) -> tuple[FloatArray, ...]:
         """Return the half-space that the sky fills, or nothing for the whole sphere."""
         return () if self.normal is None else (np.array(self.normal),)
+
+    def silhouette(self, position: FloatArray) -> Silhouette:
+        """Return the half-space that the sky fills, or the whole sphere, evenly bright."""
+        return Silhouette(Dome(() if self.normal is None else (rational(self.normal),)), self.radiance)
 
     def radiance_from(self, direction: FloatArray, position: FloatArray) -> FloatArray:
         """Return L for directions (N, 3) in the sky, 0 for those below its horizon."""

@@ -5,40 +5,29 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.contracts.chords import DiskPiece
-from radiokit.contracts.emitter import Emitter
+from radiokit.contracts.chords import DiskPatch
+from radiokit.contracts.emitter import Emitter, Silhouette
 from radiokit.contracts.parameters import Spectrum, choice, parameter
+from radiokit.contracts.piece import Piece, tilted
 from radiokit.contracts.spectral import amount, flux_estimate, weighted
 from radiokit.contracts.vectors import vector
 from radiokit.facts.directions import frame, to_world, unit
-from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.facts.source import Source
-from radiokit.measure.exact import RationalVector, cross, difference, inner, rational, root
+from radiokit.measure.exact import cross, inner
 from radiokit.physics.disk import DISK_SOURCE, DiskView, against
+from radiokit.physics.plate import Plate
 
 __all__ = ["Disk"]
 
 FloatArray = npt.NDArray[np.float64]
 
 _EPS = float(np.finfo(float).eps)
-
-
-@dataclass(frozen=True)
-class _Seen:
-    """A disk from one point in front of it, in a unit in which all lengths are at most about 1."""
-
-    towards: RationalVector  # to the centre
-    normal: RationalVector
-    radius: Fraction
-    view: DiskView
-    axes: FloatArray  # (3, 3): rows along the cone's first and second half-width, and its axis
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,7 +77,7 @@ class Disk(Emitter):
         if seen is None:
             return weighted(np.zeros(len(direction)), self.radiance)
         emission = np.maximum(-(direction @ np.array(self.normal)), 0.0)
-        return weighted(np.where(_meets(direction, seen), emission**self.exponent, 0.0), self.radiance)
+        return weighted(np.where(seen.near(direction), emission**self.exponent, 0.0), self.radiance)
 
     def sample(self, u: FloatArray, position: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Turn uniform points (N, 2) into directions (N, 3) within the cone, and their densities [sr⁻¹].
@@ -124,16 +113,16 @@ class Disk(Emitter):
             return np.zeros(len(direction))
         if self.sampling == "area":
             emission = -(direction @ np.array(self.normal))
-            return np.where(_meets(direction, seen), _per_area(emission, seen.view), 0.0)
+            return np.where(seen.near(direction), _per_area(emission, seen.view), 0.0)
         a, b = seen.view.semi_axes
         kappa = math.hypot(1.0, a) / math.hypot(1.0, b)
         local = direction @ seen.axes.T
         x, y = local[:, 0] / a, local[:, 1] / b
         top, bottom = np.hypot(x, y), np.hypot(x, y / kappa)
         flat = np.divide(top, bottom, out=np.ones_like(top), where=bottom > 0) ** 2
-        return np.where(_meets(direction, seen), _density(a, b, kappa, flat), 0.0)
+        return np.where(seen.near(direction), _density(a, b, kappa, flat), 0.0)
 
-    def _over_area(self, u: FloatArray, seen: _Seen) -> tuple[FloatArray, FloatArray]:
+    def _over_area(self, u: FloatArray, seen: Plate) -> tuple[FloatArray, FloatArray]:
         radius, turn = seen.view.radius * np.sqrt(u[:, 0]), 2.0 * np.pi * u[:, 1]
         local = np.stack((radius * np.cos(turn), radius * np.sin(turn), np.zeros(len(u))), axis=-1)
         points = np.array([float(x) for x in seen.towards]) + to_world(frame(self.normal), local)
@@ -156,25 +145,22 @@ class Disk(Emitter):
         side = unit([float(x / largest) for x in level])
         chord = np.cross(up, side)
         aside = inner(cross(horizon.up, seen.normal), seen.towards)
-        return (
-            DiskPiece(
-                radiance=self.radiance,
-                exponent=self.exponent,
-                axes=np.stack((chord, side, up)),
-                turn=horizon.turn,
-                radius=seen.view.radius,
-                depth=seen.view.depth,
-                aside=-math.copysign(horizon.aside, aside),
-                slope=horizon.slope,
-                facing=horizon.facing,
-            ),
+        patch = DiskPatch(
+            axes=np.stack((chord, side, up)),
+            turn=horizon.turn,
+            radius=seen.view.radius,
+            depth=seen.view.depth,
+            aside=-math.copysign(horizon.aside, aside),
+            slope=horizon.slope,
+            facing=horizon.facing,
         )
+        radiance = None if self.exponent else self.radiance
+        return (Piece(light=self, patch=patch, radiance=radiance, precision=tilted(patch, up)),)
 
     def solid_angle(self, position: FloatArray) -> Estimate:
         """Return Ω [sr] by one elliptic integral, for any place; 0 from behind and from the disk's plane."""
         seen = self._seen(position)
-        value = 0.0 if seen is None else seen.view.solid_angle()
-        return Estimate(value, 32 * _EPS * value, "rounding", method="closed form")
+        return Estimate(0.0, 0.0, "rounding", method="closed form") if seen is None else seen.solid_angle()
 
     def irradiance_at(self, position: FloatArray, normal: FloatArray) -> Estimate | None:
         """Return E [W m⁻²] on a receiver of any pose; None for most of those under a disk with an exponent.
@@ -185,26 +171,28 @@ class Disk(Emitter):
         seen = self._seen(position)
         if seen is None:
             return Estimate(0.0, 0.0, "rounding", method="closed form").scaled(amount(self.radiance))
-        view, horizon = seen.view, against(normal, seen.normal, seen.towards, seen.radius)
         radiance = amount(self.radiance)
+        if not self.exponent:
+            return seen.irradiance(normal).scaled(radiance)
+        view, horizon = seen.view, against(normal, seen.normal, seen.towards, seen.radius)
         if horizon.hidden <= 0 and horizon.along <= 0:
             return Estimate(0.0, 0.0, "rounding", method="closed form").scaled(radiance)
-        if self.exponent and (horizon.hidden > 0 or view.offset > 0):
+        if horizon.hidden > 0 or view.offset > 0:
             return None
-        if self.exponent:
-            power = self.exponent + 2.0
-            share = -math.expm1(-0.5 * power * math.log1p((view.radius / view.depth) ** 2))
-            value = horizon.facing * 2.0 * math.pi / power * share
-            return Estimate(value, 16 * _EPS * value, "rounding", method="closed form").scaled(radiance)
-        if horizon.hidden <= 0:
-            height = root(horizon.along * horizon.along / horizon.length)
-            value = view.whole(height=height, facing=horizon.facing)
-            return Estimate(value, 32 * _EPS * value, "rounding", method="closed form").scaled(radiance)
-        value, error, evaluations = view.cut(
-            turn=horizon.turn, slope=horizon.slope, facing=horizon.facing, aside=horizon.aside
-        )
-        method = "integral along the disk's edge"
-        return Estimate(value, error, "truncation", evaluations, method=method).scaled(radiance)
+        power = self.exponent + 2.0
+        share = -math.expm1(-0.5 * power * math.log1p((view.radius / view.depth) ** 2))
+        value = horizon.facing * 2.0 * math.pi / power * share
+        return Estimate(value, 16 * _EPS * value, "rounding", method="closed form").scaled(radiance)
+
+    def distance_along(self, direction: FloatArray, position: FloatArray) -> FloatArray:
+        """Return how far (N,) [m] the disk's plane is along directions (N, 3)."""
+        seen = self._seen(position)
+        return np.full(len(direction), np.inf) if seen is None else seen.distance(direction)
+
+    def silhouette(self, position: FloatArray) -> Silhouette | None:
+        """Return the disk, evenly bright for Lambert's law; None where it is not seen."""
+        seen = self._seen(position)
+        return None if seen is None else Silhouette(seen, None if self.exponent else self.radiance)
 
     def flux(self) -> Estimate:
         """Return the radiant flux Φ = 2πL/(n + 2) · πR² [W].
@@ -223,49 +211,9 @@ class Disk(Emitter):
             value = share * math.pi * self.radius * self.radius * amount(self.radiance)
         return flux_estimate(value, 8, radius=self.radius)
 
-    def _seen(self, position: FloatArray) -> _Seen | None:
+    def _seen(self, position: FloatArray) -> Plate | None:
         """Return what a point sees of the disk, or None behind it and in its plane."""
-        m, v = rational(self.normal), difference(self.center, position)
-        depth, across, square = -inner(m, v), inner(m, m), inner(v, v)
-        size = Fraction(self.radius) ** 2
-        if depth == 0 and square <= size:
-            allowed = f"off the disk of radius {self.radius!r} around {self.center}"
-            raise ParameterError("position", tuple(map(float, position)), allowed)
-        if depth <= 0:
-            return None
-        larger = max(square, size)
-        unit = Fraction(2) ** ((larger.numerator.bit_length() - larger.denominator.bit_length()) // 2)
-        v, radius = (v[0] / unit, v[1] / unit, v[2] / unit), Fraction(self.radius) / unit
-        depth, square, size = depth / unit, square / unit**2, size / unit**2
-        foot = depth * depth / across
-        offset = root(square - foot)
-        if not min(root(foot), float(radius)) > 1e-100:
-            allowed = f"within 1e100 radii of the disk around {self.center}, and as far off its plane"
-            raise ParameterError("position", tuple(map(float, position)), allowed)
-        view = DiskView(
-            radius=float(radius),
-            depth=root(foot),
-            offset=offset,
-            rim=float(square - foot - size) / (offset + float(radius)),
-            power=float(square - size),
-        )
-        tilt = 0.5 * math.atan2(2 * view.depth * offset, float(2 * foot + size - square))
-        return _Seen(v, m, radius, view, self._axes(v, depth / across, tilt))
-
-    def _axes(self, v: RationalVector, steps: Fraction, tilt: float) -> FloatArray:
-        """Return the cone's axes, ``tilt`` from the way across towards the centre's side."""
-        across = -np.array(self.normal)
-        inside = [x + steps * Fraction(y) for x, y in zip(v, self.normal, strict=True)]
-        largest = max(map(abs, inside))
-        if largest:
-            outward = np.array([float(x / largest) for x in inside])
-            outward /= np.linalg.norm(outward)
-        else:
-            outward = frame(across)[0]
-        first = math.cos(tilt) * outward - math.sin(tilt) * across
-        return np.stack(
-            (first, np.cross(across, outward), math.cos(tilt) * across + math.sin(tilt) * outward)
-        )
+        return Plate.seen(self.center, self.normal, self.radius, position)
 
 
 def _per_area(emission: FloatArray, view: DiskView) -> FloatArray:
@@ -278,10 +226,3 @@ def _per_area(emission: FloatArray, view: DiskView) -> FloatArray:
 def _density(a: float, b: float, kappa: float, flat: FloatArray) -> FloatArray:
     far = math.hypot(1.0, a)
     return far / a * ((far + np.sqrt(flat)) / b) / (2.0 * np.pi * kappa)
-
-
-def _meets(direction: FloatArray, seen: _Seen) -> npt.NDArray[np.bool_]:
-    """Return which directions lie in the cone; a sample at its rim may be off by rounding."""
-    a, b = seen.view.semi_axes
-    x, y, z = (direction @ seen.axes.T).T
-    return np.asarray(np.hypot(x / a, y / b) <= z * (1 + 8 * _EPS) + 4 * _EPS / min(a, b))

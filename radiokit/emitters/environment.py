@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.contracts.emitter import Emitter
+from radiokit.contracts.emitter import Emitter, Silhouette
 from radiokit.contracts.oriented import oriented
 from radiokit.contracts.vectors import vector
 from radiokit.facts.directions import to_local, to_world
@@ -17,6 +17,7 @@ from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate, rounding
 from radiokit.facts.source import Source
 from radiokit.measure.latlong import cell_edges, cell_projections, cell_solid_angles
+from radiokit.physics.eclipse import Dome
 
 __all__ = ["Environment"]
 
@@ -148,6 +149,10 @@ class Environment(Emitter):
     def dome(self, position: FloatArray) -> tuple[FloatArray, ...] | None:
         """Return ``()``, the whole sphere, for a map with one radiance everywhere, and None else."""
         return () if np.all(self.radiance == self.radiance[0, 0]) else None
+
+    def silhouette(self, position: FloatArray) -> Silhouette | None:
+        """Return the whole sphere for a map with one radiance everywhere, and None else: cells have edges."""
+        return Silhouette(Dome(), float(self.radiance[0, 0])) if self.dome(position) == () else None
 
     def radiance_from(self, direction: FloatArray, position: FloatArray) -> FloatArray:
         """Return the radiance, (N,) or (N, K), of the cells in which directions (N, 3) lie."""

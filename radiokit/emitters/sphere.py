@@ -5,24 +5,25 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.contracts.chords import CapPiece
-from radiokit.contracts.emitter import Emitter
+from radiokit.contracts.chords import CapPatch
+from radiokit.contracts.emitter import Emitter, Silhouette
 from radiokit.contracts.parameters import Spectrum, choice, parameter
+from radiokit.contracts.piece import Piece, tilted
 from radiokit.contracts.spectral import amount, flux_estimate, weighted
 from radiokit.contracts.vectors import vector
 from radiokit.facts.directions import frame, to_world, unit
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.facts.source import Source
-from radiokit.measure.exact import RationalVector, cross, difference, inner, rational, root
+from radiokit.measure.exact import inner, rational, root
 from radiokit.measure.warps import UniformCone
-from radiokit.physics.cap import CAP_SOURCE, cap_irradiance
+from radiokit.physics.ball import Ball
+from radiokit.physics.cap import CAP_SOURCE
 
 __all__ = ["Sphere"]
 
@@ -30,18 +31,6 @@ FloatArray = npt.NDArray[np.float64]
 
 _EPS = float(np.finfo(float).eps)
 _MOST = float(np.finfo(float).max)
-
-
-@dataclass(frozen=True)
-class _View:
-    """A sphere from one point: the way to its centre, and sine and cosine of half its width."""
-
-    towards: RationalVector
-    square: Fraction  # the squares of the distance to the centre, and of that along a tangent
-    tangent: Fraction
-    axis: FloatArray
-    sine: float
-    cosine: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,7 +72,7 @@ class Sphere(Emitter):
 
     def radiance_from(self, direction: FloatArray, position: FloatArray) -> FloatArray:
         """Return L for directions (N, 3) that meet the sphere, 0 for the others."""
-        return weighted(self._meets(direction, self._view(position)), self.radiance)
+        return weighted(self._view(position).near(direction), self.radiance)
 
     def sample(self, u: FloatArray, position: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Turn uniform points (N, 2) into directions (N, 3) within the cone, and densities [sr⁻¹].
@@ -103,32 +92,29 @@ class Sphere(Emitter):
         density: Any = 1.0 / _cone(view)
         if self.sampling == "area":
             density = _per_area(np.sqrt(np.sum((direction - view.axis) ** 2, axis=1)), view)
-        return np.where(self._meets(direction, view), density, 0.0)
+        return np.where(view.near(direction), density, 0.0)
 
     def pieces(self, position: FloatArray, normal: FloatArray) -> Sequence[Emitter]:
         """Return what of the sphere is above a receiver's horizon."""
         view, n = self._view(position), rational(normal)
         length, along = inner(n, n), inner(n, view.towards)
-        hidden = Fraction(self.radius) ** 2 * length - along * along
+        hidden = view.radius**2 * length - along * along
         if hidden <= 0:
             return (self,) if along > 0 else ()
         level = [x - along / length * y for x, y in zip(view.towards, n, strict=True)]
         largest = max(map(abs, level))
         side, up = unit([float(x / largest) for x in level]), np.asarray(normal, dtype=float)
-        return (
-            CapPiece(
-                radiance=self.radiance,
-                axes=np.stack((np.cross(up, side), side, up)),
-                turn=math.atan2(root(hidden), math.copysign(root(along * along), -along)),
-                sine=view.sine,
-                cosine=view.cosine,
-            ),
+        patch = CapPatch(
+            axes=np.stack((np.cross(up, side), side, up)),
+            turn=math.atan2(root(hidden), math.copysign(root(along * along), -along)),
+            sine=view.sine,
+            cosine=view.cosine,
         )
+        return (Piece(light=self, patch=patch, radiance=self.radiance, precision=tilted(patch, up)),)
 
     def solid_angle(self, position: FloatArray) -> Estimate:
         """Return Ω = 4π sin²(σ/2) [sr], with sinσ = R/d: 2π for a sphere touched."""
-        value = _cone(self._view(position))
-        return Estimate(value, 8 * _EPS * value, "rounding", method="closed form")
+        return self._view(position).solid_angle()
 
     def irradiance_at(self, position: FloatArray, normal: FloatArray) -> Estimate:
         """Return E [W m⁻²] on a receiver of any tilt: πL (R/d)² cosθ, less what the horizon hides.
@@ -136,24 +122,15 @@ class Sphere(Emitter):
         Whether the horizon cuts the sphere, and by how much, is decided in rational arithmetic, so that the
         relative error is that of a few operations for every sphere and every tilt.
         """
-        view, n = self._view(position), rational(normal)
-        length, along = inner(n, n), inner(n, view.towards)
-        hidden = Fraction(self.radius) ** 2 * length - along * along
-        height = math.copysign(root(along * along / (length * view.square)), along)
-        if hidden <= 0:
-            value = math.pi * view.sine * view.sine * max(height, 0.0)
-        else:
-            aside = cross(n, view.towards)
-            value = cap_irradiance(
-                sine=view.sine,
-                cosine=view.cosine,
-                height=height,
-                offset=root(inner(aside, aside) / (length * view.square)),
-                angle=math.atan2(root(hidden * view.square), root(view.tangent * along * along)),
-                half_azimuth=math.atan2(root(hidden), root(view.tangent * length)),
-            )
-        found = Estimate(value, 48 * _EPS * value, "rounding", method="closed form")
-        return found.scaled(amount(self.radiance))
+        return self._view(position).irradiance(normal).scaled(amount(self.radiance))
+
+    def distance_along(self, direction: FloatArray, position: FloatArray) -> FloatArray:
+        """Return how far (N,) [m] the sphere is along directions (N, 3) that meet it."""
+        return self._view(position).distance(direction)
+
+    def silhouette(self, position: FloatArray) -> Silhouette:
+        """Return the ball, evenly bright."""
+        return Silhouette(self._view(position), self.radiance)
 
     def flux(self) -> Estimate:
         """Return the radiant flux Φ = πL · 4πR² [W].
@@ -170,30 +147,18 @@ class Sphere(Emitter):
             value = 4.0 * math.pi**2 * self.radius * self.radius * amount(self.radiance)
         return flux_estimate(value, 4, radius=self.radius)
 
-    def _view(self, position: FloatArray) -> _View:
-        towards = difference(self.center, position)
-        square = inner(towards, towards)
-        size = Fraction(self.radius) ** 2
-        if square <= size:
+    def _view(self, position: FloatArray) -> Ball:
+        ball = Ball.seen(self.center, self.radius, position)
+        if ball.tangent <= 0:
             allowed = f"outside the sphere of radius {self.radius!r} around {self.center}"
             raise ParameterError("position", tuple(map(float, position)), allowed)
-        sine = root(size / square)
-        if sine < 1e-100:
+        if ball.sine < 1e-100:
             allowed = "nearer to the sphere, which is a point light at more than 1e100 radii"
             raise ParameterError("position", tuple(map(float, position)), allowed)
-        largest = max(map(abs, towards))
-        axis = unit([float(component / largest) for component in towards])
-        return _View(towards, square, square - size, axis, sine, root((square - size) / square))
-
-    @staticmethod
-    def _meets(direction: FloatArray, view: _View) -> npt.NDArray[np.bool_]:
-        """Return which directions lie in the cone, by their distance from its axis, as samples keep it."""
-        chord = view.sine * math.sqrt(2.0 / (1.0 + view.cosine))
-        distance = np.sqrt(np.sum((direction - view.axis) ** 2, axis=1))
-        return np.asarray(distance <= chord * (1.0 + 4 * _EPS) + 2 * _EPS)
+        return ball
 
 
-def _over_area(u: FloatArray, view: _View) -> tuple[FloatArray, FloatArray]:
+def _over_area(u: FloatArray, view: Ball) -> tuple[FloatArray, FloatArray]:
     """Return directions to points spread evenly over what is seen of the surface, and their densities.
 
     In units of the distance d, with γ the point's angle at the centre from the way to the receiver and
@@ -212,7 +177,7 @@ def _over_area(u: FloatArray, view: _View) -> tuple[FloatArray, FloatArray]:
     return to_world(frame(view.axis), local), np.minimum(density, _MOST)
 
 
-def _per_area(chord: FloatArray, view: _View) -> FloatArray:
+def _per_area(chord: FloatArray, view: Ball) -> FloatArray:
     """Return r²/(A cosθ) for directions at a distance from the axis' unit vector."""
     sine = chord * np.sqrt(np.maximum(1.0 - 0.25 * chord * chord, 0.0))
     slant = np.sqrt(np.maximum((view.sine - sine) * (view.sine + sine), 0.0))  # R/d cosθ
@@ -223,6 +188,6 @@ def _per_area(chord: FloatArray, view: _View) -> FloatArray:
     return np.minimum(density, _MOST)
 
 
-def _cone(view: _View) -> float:
+def _cone(view: Ball) -> float:
     """Return 2π (1 − cosσ)."""
     return 2.0 * math.pi * view.sine * view.sine / (1.0 + view.cosine)
