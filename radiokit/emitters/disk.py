@@ -138,9 +138,8 @@ class Disk(Emitter):
         if horizon.hidden <= 0:
             return (self,) if horizon.along > 0 else ()
         up, share = np.asarray(normal, dtype=float), horizon.towards / horizon.length
-        level = [
-            -m - share * n for m, n in zip(seen.normal, horizon.up, strict=True)
-        ]  # across, as far as level
+        # The level part of the way across to the plane: the chord is square to it.
+        level = [-m - share * n for m, n in zip(seen.normal, horizon.up, strict=True)]
         largest = max(map(abs, level))
         side = unit([float(x / largest) for x in level])
         chord = np.cross(up, side)

@@ -46,7 +46,7 @@ class Sphere(Emitter):
     radiance : float, or sequence of K floats
         Radiance L [W m⁻² sr⁻¹], in [0, 1e100]; one number, or one a wavelength.
     sampling : {"solid angle", "area"}
-        Over what its directions are sampled evenly: all that is seen of it counts alike, or all of the area.
+        Over what its directions are sampled evenly: the solid angle, or the area that is seen.
 
     Raises
     ------
