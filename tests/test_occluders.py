@@ -23,6 +23,8 @@ from radiokit.contracts.shadowed import Shadowed, shadowed
 from radiokit.facts.directions import unit
 from radiokit.facts.errors import ParameterError, RadiokitError, UnknownNameError
 from radiokit.facts.verdict import Outcome
+from radiokit.measure.exact import rational
+from radiokit.measure.lunes import Region
 from radiokit.measure.statistics import sidak, z_test
 from radiokit.physics.ball import Ball
 from radiokit.physics.eclipse import place, relation
@@ -349,6 +351,33 @@ def test_cones_lie_as_their_directions_do(rng):
         assert found != "across" or np.any(a) or np.any(b)
 
 
+def test_regions_are_as_large_as_random_directions_say(rng):
+    """Between planes, in a cone and outside of overlapping holes, by the share of directions within."""
+    w = unit(rng.normal(size=(40_000, 3)))
+    z = []
+    for k in range(24):
+        planes = [rational(rng.normal(size=3)) for _ in range(k % 4)]
+        lamp = (
+            Plate.seen((0, 0, 3), tuple(unit([0.5, 0.3, -1])), rng.uniform(1, 4), ORIGIN) if k % 3 else None
+        )
+        holes = [Ball.seen((0.1, 0, 1), r, ORIGIN) for r in rng.uniform(0.1, 0.8, k % 2)]
+        holes += [Ball.seen((0, 0.2, 1), r, ORIGIN) for r in rng.uniform(0.21, 0.8, k % 2)]
+        cone = None if lamp is None else lamp.cone
+        region = Region(unit([0.05, 0.05, 1.0]), planes, cone, [hole.cone for hole in holes])
+        inside = np.ones(len(w), dtype=bool)
+        for plane in planes:
+            inside &= w @ np.array([float(x) for x in plane]) >= 0
+        for hole in holes:
+            inside &= ~hole.contains(w)
+        if lamp is not None:
+            inside &= lamp.contains(w)
+        share = inside.mean()
+        size = sum(arc.size for arc in region.arcs) / (4 * np.pi)
+        z.append((share - size) / max(math.sqrt(size * (1 - size) / len(w)), 1e-9))
+    assert max(map(abs, z)) < 4.5
+    assert np.std(z) < 2
+
+
 def test_what_is_beyond_the_light_hides_nothing():
     bulb = Ball.seen((0, 0, 4), 1.0, ORIGIN)
     assert relation(seen(0, 0, 2, 0.4), bulb) == "within"
@@ -580,6 +609,24 @@ def test_screens_that_overlap_are_not_counted_twice():
         square = [[mpf(x), mpf(y), mpf(1)] for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
         truth = contour(square, UP) - contour(corners[0], UP) - contour(corners[1], UP) + contour(shared, UP)
         assert abs(mpf(float(found.value)) - truth) < mpf(10) ** -14
+
+
+def test_screens_before_a_round_light_are_not_counted_twice():
+    """One behind the other, overlapping and half below the horizon; the disk is as good as a huge square."""
+    items = [level(-0.1, 0.3, -0.2, 0.1, 0.5), level(0.1, 0.9, -0.4, 0.9, 0.9)]
+    disk = emitter("disk", center=(0, 0, 1), normal=(0, 0, -1), radius=2, radiance=1.0)
+    for normal in ((0, 0, 1), (0.5, -0.3, 1), (1, 0, 0)):
+        for given in (items, items[::-1]):
+            found = irradiance(disk, normal=normal, occluders=given)
+            hidden = irradiance(panel(4.0), normal=normal).value
+            hidden -= irradiance(panel(4.0), normal=normal, occluders=given).value
+            expected = irradiance(disk, normal=normal)
+            assert abs(found.value - (expected.value - hidden)) <= found.error + expected.error + 1e-15
+            assert found.error < 1e-13
+    angle = solid_angle(disk).value - solid_angle(disk, occluders=items).value
+    assert (
+        abs(angle - (solid_angle(panel(4.0)).value - solid_angle(panel(4.0), occluders=items).value)) < 1e-14
+    )
 
 
 def test_a_screen_that_pierces_a_light_hides_what_is_beyond_it():

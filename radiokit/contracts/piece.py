@@ -30,6 +30,10 @@ class Patch(Protocol):
         """The solid angle [sr]."""
 
     @property
+    def spread(self) -> float:
+        """How far off ``size`` may be, but for rounding [sr]."""
+
+    @property
     def precision(self) -> float:
         """What rounding may change of an integral over it, relative to its value."""
 
@@ -82,6 +86,7 @@ class TrianglePatch:
     warp: UniformSphericalTriangle
     size: float
     precision: float
+    spread: float = 0.0
 
     def sample(self, u: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return directions (N, 3) and their densities (N,) [sr⁻¹]."""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import operator
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, reduce
-from itertools import combinations
+from itertools import combinations, product
 from typing import Any, ClassVar
 
 import numpy as np
@@ -22,11 +23,11 @@ from radiokit.measure.circlecone import CircleCone
 from radiokit.measure.clip import Cone, sides
 from radiokit.measure.exact import RationalVector, cross, inner, rational
 from radiokit.measure.lattice import kronecker
-from radiokit.measure.lunes import Region
+from radiokit.measure.lunes import NODES, Region
 from radiokit.physics.ball import Ball
 from radiokit.physics.eclipse import Body, Dome, Relation, place, relation
 from radiokit.physics.facets import Facets
-from radiokit.physics.litparts import cones_irradiance, cones_solid_angle, corners, lit_parts
+from radiokit.physics.litparts import above, cones_irradiance, cones_solid_angle, corners, joined, lit_parts
 from radiokit.physics.plate import Plate
 
 __all__ = ["Shadowed", "shadowed"]
@@ -87,6 +88,8 @@ class Shadowed(Emitter):
 
     def visible(self, direction: FloatArray, position: FloatArray) -> BoolArray:
         """Return whether nothing is before the light along directions (N, 3)."""
+        if self._sight(position).dark:
+            return np.zeros(len(direction), dtype=bool)
         reach = self.light.distance_along(direction, position)
         found = np.ones(len(direction), dtype=bool)
         for body in self._sight(position).bodies:
@@ -274,49 +277,51 @@ class _Sight:
     # --- closed forms ---
 
     def irradiance(self, normal: FloatArray) -> Estimate | None:
+        """Return what is left of an even light, where what is hidden is a sum."""
         silhouette = self.silhouette
-        if silhouette is None or silhouette.radiance is None or not self.sure:
+        if silhouette is None or silhouette.radiance is None or not self._adds:
             return None
         light, radiance = silhouette.body, silhouette.radiance
-        hidden = self._subtracted()
-        if hidden is None:
-            return None
+        hidden = [body.irradiance(normal) for body, _ in self.rounds]
+        whole: Estimate | None
         if isinstance(light, Facets | Dome) and self.facets:
-            found = cones_irradiance(lit_parts(light, self.facets, normal), normal)
-            whole: Estimate | None = _times(found, radiance)
+            whole = _times(cones_irradiance(lit_parts(light, self.facets, normal), normal), radiance)
         else:
             whole = self.light.irradiance_at(self.position, normal)
-        if whole is None:
-            return None
-        return _less(whole, [_times(body.irradiance(normal), radiance) for body in hidden])
+            hidden.append(cones_irradiance(above(joined(self.facets), normal), normal))
+        return None if whole is None else _less(whole, [_times(part, radiance) for part in hidden])
 
     def solid_angle(self, whole: Estimate) -> Estimate | None:
-        hidden = self._subtracted() if self.sure else None
-        if hidden is not None and self.silhouette is not None:
-            light = self.silhouette.body
+        """Return what is left of the solid angle, by the sizes of what is lit if need be."""
+        if self._adds and self.silhouette is not None:
+            light, hidden = self.silhouette.body, [body.solid_angle() for body, _ in self.rounds]
             if isinstance(light, Facets | Dome) and self.facets:
                 cones = [cone for up in _BOTH for cone in lit_parts(light, self.facets, up)]
-                whole = cones_solid_angle(cones)
-            return _less(whole, [body.solid_angle() for body in hidden])
+                return _less(cones_solid_angle(cones), hidden)
+            return _less(whole, [*hidden, cones_solid_angle(joined(self.facets))])
         halves = [self.above(up).patches(up) for up in _BOTH]
         if any(half is None for half in halves):
             return None
-        sizes = [(patch.size, patch.precision + 1e-9) for half in halves for patch in half or ()]
-        value = float(np.sum([size for size, _ in sizes]))
-        error = float(np.sum([size * off for size, off in sizes]))
-        count = 48 * len(sizes)
+        patches = [patch for half in halves for patch in half or ()]
+        value = math.fsum(patch.size for patch in patches)
+        error = math.fsum(patch.size * patch.precision + 2 * patch.spread for patch in patches)
+        count = 2 * NODES * len(patches)
         return Estimate(value, error, "truncation", count, method="Gauss-Legendre around what is lit")
 
-    def _subtracted(self) -> list[Body] | None:
-        """Return the bodies whose light is to be taken from the rest; None where that is not their sum."""
-        light = self.silhouette.body if self.silhouette else None
-        exact = isinstance(light, Facets | Dome)  # the facets' parts are cut out
-        hidden = [(body, how) for body, how in self.placed if not (exact and isinstance(body, Facets))]
-        for k, (body, how) in enumerate(hidden):
-            others = [other for other, _ in hidden[:k]] + (self.facets if exact else [])
-            if how != "within" or any(place(body, other) != "apart" for other in others):
-                return None
-        return [body for body, _ in hidden]
+    @property
+    def _adds(self) -> bool:
+        """Whether round bodies are within the light, and apart from each other and from the polygons.
+
+        Polygons may overlap: of a light with straight edges they are cut out, and within a round one joined.
+        """
+        if not self.sure or self.silhouette is None:
+            return False
+        straight = isinstance(self.silhouette.body, Facets | Dome)
+        rounds = [body for body, _ in self.rounds]
+        if any(how != "within" for body, how in self.placed if not (straight and isinstance(body, Facets))):
+            return False
+        pairs = [*combinations(rounds, 2), *product(rounds, self.facets)]
+        return all(place(first, second) == "apart" for first, second in pairs)
 
     # --- patches ---
 
@@ -352,6 +357,7 @@ def _times(found: Estimate, radiance: Spectrum) -> Estimate:
 
 def _less(whole: Estimate, hidden: Sequence[Estimate]) -> Estimate:
     """Return what is left, with the bounds of all terms: they say how much of it has cancelled."""
+    hidden = [part for part in hidden if part.value > 0]
     if not hidden:
         return whole
     taken = reduce(operator.add, hidden)

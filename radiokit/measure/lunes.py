@@ -15,12 +15,15 @@ from radiokit.measure.circlecone import CircleCone
 from radiokit.measure.exact import RationalVector, inner, rational
 from radiokit.measure.slope import gauss_legendre
 
-__all__ = ["Arc", "Region"]
+__all__ = ["NODES", "Arc", "Region"]
 
 FloatArray = npt.NDArray[np.float64]
 
 _EPS = float(np.finfo(float).eps)
 _TURN = 2 * np.pi
+NODES = 48
+"""Nodes along an arc with which it is measured."""
+
 _SAME = 1e-12  # azimuths that are nearer than this to each other bound nothing
 
 
@@ -206,10 +209,9 @@ class Arc:
             return self.start + span * x, np.full(len(x), span)
         return self.start + span * x * x * (3 - 2 * x), 6 * span * x * (1 - x)
 
-    @cached_property
-    def _measured(self) -> tuple[float, float]:
-        """The solid angle [sr], and the length of the edges [rad]."""
-        x, w = gauss_legendre(48)
+    def _measure(self, nodes: int) -> tuple[float, float]:
+        """Return the solid angle [sr] and the length of the edges [rad], by a rule."""
+        x, w = gauss_legendre(nodes)
         azimuth, slope = self._azimuth(x)
         low, high = self.region.bounds(azimuth)
         open_ = high > low
@@ -217,10 +219,19 @@ class Arc:
         edges = np.where(open_, np.sin(low) + np.sin(high) + (high - low), 0.0)
         return float(np.sum(w * slope * rings)), float(np.sum(w * slope * edges))
 
+    @cached_property
+    def _measured(self) -> tuple[float, float]:
+        return self._measure(NODES)
+
     @property
     def size(self) -> float:
-        """The solid angle [sr], to the digits of a rule of 48 nodes."""
+        """The solid angle [sr], by a rule of ``NODES`` nodes."""
         return self._measured[0]
+
+    @property
+    def spread(self) -> float:
+        """How far a smaller rule is from ``size`` [sr]."""
+        return abs(self.size - self._measure(2 * NODES // 3)[0])
 
     @property
     def precision(self) -> float:

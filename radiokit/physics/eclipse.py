@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal
@@ -34,7 +35,7 @@ Body = Ball | Plate | Facets
 
 
 def place(body: Body, light: Body | Dome) -> Place:
-    """Return how the directions to a body lie to those to a light, decided without rounding.
+    """Return how the directions to a body lie to those to a light, whatever the distances, without rounding.
 
     >>> from radiokit.physics.ball import Ball
     >>> sun, moon = Ball.seen((0, 0, 400), 1.0, (0, 0, 0)), Ball.seen((0, 0, 1), 0.002, (0, 0, 0))
@@ -46,7 +47,7 @@ def place(body: Body, light: Body | Dome) -> Place:
     if isinstance(light, Dome):
         return _in_dome(body, light)
     if isinstance(body, Facets) and isinstance(light, Facets):
-        return _facets(body, light)
+        return _facets(body.parts, light)
     if isinstance(body, Facets):
         return _TURNED[_round_in_facets(light, body)]  # type: ignore[arg-type]
     if isinstance(light, Facets):
@@ -85,8 +86,7 @@ def _round_in_facets(body: Ball | Plate, light: Facets) -> Place:
     return "within" if light.holds(cone.center) else "apart"
 
 
-def _facets(body: Facets, light: Facets) -> Place:
-    parts = before(body, light)
+def _facets(parts: Sequence[Cone], light: Facets) -> Place:
     lit, hidden = list(light.parts), False
     for part in parts:
         left = [rest for cone in lit for rest in without(cone, sides(part))]
@@ -96,9 +96,10 @@ def _facets(body: Facets, light: Facets) -> Place:
         return "apart"
     if not lit:
         return "around"
+    rest = list(parts)
     for cone in light.parts:
-        parts = [rest for part in parts for rest in without(part, sides(cone))]
-    return "across" if parts else "within"
+        rest = [outside for part in rest for outside in without(part, sides(cone))]
+    return "across" if rest else "within"
 
 
 def before(body: Facets, light: Facets | Dome) -> list[Cone]:
@@ -235,7 +236,7 @@ def relation(body: Body, light: Body | Dome) -> Relation:
     ('within', 'apart', 'around')
     """
     if isinstance(body, Facets) and isinstance(light, Facets):
-        return place(body, light)
+        return _facets(before(body, light), light)
     found = place(body, light)
     if found == "apart":
         return found

@@ -15,7 +15,7 @@ from radiokit.physics.eclipse import Dome, before
 from radiokit.physics.facets import Facets
 from radiokit.physics.polygon import cross, inner, refined
 
-__all__ = ["cones_irradiance", "cones_solid_angle", "corners", "lit_parts"]
+__all__ = ["above", "cones_irradiance", "cones_solid_angle", "corners", "joined", "lit_parts"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -30,19 +30,37 @@ def lit_parts(light: Facets | Dome, bodies: Sequence[Facets], normal: FloatArray
     >>> bool(abs(hidden - wall.irradiance(up).value) < 1e-14)
     True
     """
-    horizon = rational(normal)
     if isinstance(light, Dome):
-        cones = hemisphere(horizon)
+        cones = hemisphere(rational(normal))
         for plane in light.normals:
             cones = [clipped(cone, plane) for cone in cones]
     else:
-        cones = [clipped(cone, horizon) for cone in light.parts]
-    cones = [cone for cone in cones if len(cone) > 2 and has_area(cone)]
+        cones = list(light.parts)
+    cones = above(cones, normal)
     for body in bodies:
         for part in before(body, light):
             planes = sides(part)
             cones = [rest for cone in cones for rest in without(cone, planes)]
     return cones
+
+
+def joined(bodies: Sequence[Facets]) -> list[Cone]:
+    """Return convex cones that make up what polygons cover together."""
+    found: list[Cone] = []
+    for body in bodies:
+        for part in body.parts:
+            fresh = [part]
+            for cone in found:
+                fresh = [rest for piece in fresh for rest in without(piece, sides(cone))]
+            found += fresh
+    return found
+
+
+def above(cones: Sequence[Cone], normal: FloatArray) -> list[Cone]:
+    """Return the parts of convex cones that are above a receiver's horizon."""
+    horizon = rational(normal)
+    kept = (clipped(cone, horizon) for cone in cones)
+    return [cone for cone in kept if len(cone) > 2 and has_area(cone)]
 
 
 def cones_irradiance(cones: Sequence[Cone], normal: FloatArray) -> Estimate:
