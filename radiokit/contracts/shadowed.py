@@ -179,10 +179,9 @@ class Shadowed(Emitter):
             if np.all(seen):
                 return self.light.irradiance_at(position, normal)
             cosine = np.maximum(directions[seen] @ normal, 0.0)
-            value, full = (
-                np.sum(times(arriving[seen], each), axis=0)[()] for each in (cosine, np.ones_like(cosine))
-            )
-            return Estimate(value, 8 * _EPS * full, "rounding", method="closed form")
+            value = np.sum(times(arriving[seen], cosine), axis=0)[()]
+            bound = 8 * _EPS * np.sum(arriving[seen], axis=0)[()]
+            return Estimate(value, bound, "rounding", method="closed form")
         found = self._sight(position).above(normal)
         if not found.bodies:
             return self.light.irradiance_at(position, normal)
