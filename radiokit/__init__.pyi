@@ -1,5 +1,6 @@
 from . import bsdfs as bsdfs
 from . import emitters as emitters
+from . import occluders as occluders
 from .checks.judge import check as check
 from .contracts.albedo import albedo as albedo
 from .contracts.blackbox import as_bsdf as as_bsdf
@@ -15,6 +16,9 @@ from .contracts.emitter import emitter as emitter
 from .contracts.emitter import list_emitters as list_emitters
 from .contracts.mixture import mixture as mixture
 from .contracts.mixture import scaled as scaled
+from .contracts.occluder import Occluder as Occluder
+from .contracts.occluder import list_occluders as list_occluders
+from .contracts.occluder import occluder as occluder
 from .contracts.parameters import parameter as parameter
 from .contracts.scalar import Kernels as Kernels
 from .contracts.scalar import ScalarBSDF as ScalarBSDF

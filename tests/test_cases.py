@@ -308,6 +308,43 @@ ROUND = {
 }
 
 
+def partial_eclipse():
+    """ρ/π ∫ cosθ dω in rings about the normal, less the azimuths that the other sphere hides."""
+    sun, moon = mpmath.asin(mpf(1) / 4), mpmath.asin(mpf("0.5") / mpmath.sqrt(mpf("4.16")))
+    aside = mpmath.atan(mpf(1) / 5)
+
+    def ring(theta):
+        across = mpmath.sin(theta) * mpmath.sin(aside)
+        edge = (mpmath.cos(moon) - mpmath.cos(theta) * mpmath.cos(aside)) / across
+        hidden = mpmath.acos(min(edge, mpf(1)))
+        return 2 * (mpmath.pi - hidden) * mpmath.cos(theta) * mpmath.sin(theta)
+
+    return mpmath.quad(ring, [moon - aside, sun]) / (2 * mpmath.pi)  # the zenith is dark
+
+
+SHADOWS = {
+    "lambert-in-total-eclipse": lambda: mpf(0),
+    "lambert-in-annular-eclipse": lambda: under_sphere(mpf(1) / 4, 90) - under_sphere(mpf(1) / 5, 90),
+    "lambert-in-partial-eclipse": partial_eclipse,
+    "phong-10-in-annular-eclipse": lambda: phong_cone(mpf("0.9375")) - phong_cone(mpf("0.96")),
+    "mirror-in-annular-eclipse": lambda: mpf(0),
+    "lambert-under-disk-behind-disk": lambda: under_disk(1, 2, 0) - under_disk(mpf(1) / 4, 1, 0),
+    "lambert-under-disk-behind-speck": lambda: under_disk(1, 2, 0) - under_disk(mpf(10) ** -6, 1, 0),
+    "lambert-under-sky-behind-disk": lambda: sky("0") - under_disk(1, 1, 0),
+    "lambert-under-sky-beside-ball": lambda: sky("0") - under_sphere(mpf(1) / 2, 0),
+    "lambert-under-sky-behind-two-balls": lambda: (
+        sky("0")
+        - under_sphere(mpf(1) / 2, 90)
+        - under_sphere(mpf(1) / 4, mpmath.degrees(mpmath.asin(mpf(3) / 5)))
+    ),
+    "lambert-under-overcast-sky-behind-ball": lambda: mpmath.quad(
+        lambda t: overcast(mpmath.cos(t)) * mpmath.sin(t) * mpmath.cos(t), [deg(30), deg(90)]
+    ),
+    "lambert-under-point-behind-ball": lambda: mpf(0),
+    "lambert-under-point-beside-ball": lambda: mpf(1) / 2 / mpmath.pi,
+}
+
+
 def dot(a, b):
     return mpmath.fsum(x * y for x, y in zip(a, b, strict=True))
 
@@ -422,6 +459,10 @@ POLYGONS = {
     "lambert-under-triangle-touching-horizon": lambda: shadow([(1, 0, 0), (1, -0.5, 1), (1, 0.5, 1)]),
     "lambert-under-sliver": lambda: shadow([(-1, -0.5, 1), (0, 0.25 + 2.0**-20, 1), (1, 1, 1)]),
     "lambert-beside-skirting": lambda: shadow(wall(0, 2.0**-10)),
+    "lambert-under-half-of-square": lambda: shadow(block(-1, 1, -1, 1)) / 2,
+    "lambert-under-square-behind-square": lambda: shadow(block(-1, 1, -1, 0.5), block(-1, 0.5, 0.5, 1)),
+    "lambert-under-square-below-wall": lambda: shadow(block(-1, 1, -1, 1)),
+    "lambert-in-courtyard": lambda: shadow(block(-1, 1, -1, 1)),
     **{f"phong-{n}-under-octant": lambda: mpf(1) / 4 for n in (1, 20, 200)},
     "phong-1-under-square": lambda: lobe(PANEL, 1, (-0.6, 0, 0.8)),
     "phong-20-under-square": lambda: lobe(PANEL, 20, (0.6, 0, 0.8)),
@@ -433,6 +474,7 @@ POLYGONS = {
 
 EXACT = {
     **ROUND,
+    **SHADOWS,
     "lambert-in-furnace": lambda: mpf(1) / 2,
     "mirror-in-furnace": lambda: mpf(0.9),
     **{f"phong-10-in-furnace-at-{t}deg": lambda t=t: phong(10, t) for t in (0, 30, 60, 80)},
@@ -605,6 +647,7 @@ def test_a_case_is_complete(item):
             item.scene.wo,
             normal=item.scene.normal,
             position=item.scene.position,
+            occluders=item.scene.occluders,
         )
         assert auto.converged
         assert auto.is_bound

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import operator
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property, partial, reduce
 from typing import Any
@@ -13,16 +13,20 @@ import numpy as np
 import numpy.typing as npt
 
 from radiokit.contracts.emitter import Emitter
+from radiokit.contracts.occluder import Occluder, check_occluders
+from radiokit.contracts.shadowed import Shadowed, shadowed
 from radiokit.contracts.vectors import as_point, as_unit
 from radiokit.facts.directions import frame, to_local, to_world
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
+from radiokit.measure import lowdiscrepancy
 from radiokit.measure.quadrature import box
 
-__all__ = ["Receiver", "check_emitter", "irradiance", "over_light", "solid_angle"]
+__all__ = ["Receiver", "behind", "check_emitter", "irradiance", "over_light", "solid_angle"]
 
 FloatArray = npt.NDArray[np.float64]
 
+_SCATTERED = 1 << 16
 _ROUNDING = 1e-14  # of the heights of a piece that ends at the horizon
 
 
@@ -83,6 +87,7 @@ def irradiance(
     normal: npt.ArrayLike = (0.0, 0.0, 1.0),
     position: npt.ArrayLike = (0.0, 0.0, 0.0),
     rtol: float = 1e-8,
+    occluders: Occluder | Iterable[Occluder] = (),
 ) -> Estimate:
     """Return the irradiance E = ∫ L cosθ dω [W m⁻²] of an emitter on one side of a receiver.
 
@@ -98,18 +103,21 @@ def irradiance(
         Where the receiver is [m].
     rtol : float
         Relative tolerance of the quadrature, in (0, 1).
+    occluders : Occluder or iterable of Occluder, optional
+        Opaque bodies between the light and the receiver.
 
     Raises
     ------
     ParameterError
-        When ``normal`` or ``position`` is no vector, or the receiver lies on the light.
+        When ``normal`` or ``position`` is no vector, or the receiver lies on the light or an occluder.
 
     >>> from radiokit.emitters.directional import Directional
     >>> sun = Directional(direction=(0, 3, 4), irradiance=1000.0)
     >>> irradiance(sun).value
     800.0
     """
-    receiver, light = Receiver(normal, position), check_emitter(emitter)
+    receiver = Receiver(normal, position)
+    light = behind(emitter, occluders, receiver)
     start = time.perf_counter()
     found = light.irradiance_at(receiver.origin, receiver.axis)
     if found is not None:
@@ -129,9 +137,11 @@ def over_light(
 ) -> Estimate:
     """Integrate over a light, piece by piece, with points in the square from which a piece is sampled."""
     pieces = light.pieces(receiver.origin, receiver.axis)
+    if pieces is None:
+        return _scattered(partial(integrand, light))
     if not pieces:
         nothing = np.zeros_like(np.asarray(integrand(light, np.full((1, 2), 0.5)))[0])[()]
-        return Estimate(nothing, nothing, "truncation", 1, method="none of the light is above the horizon")
+        return Estimate(nothing, nothing, "truncation", 1, method="none of the light is seen")
     found = [_over_piece(partial(integrand, piece), piece, receiver, rtol) for piece in pieces]
     return reduce(operator.add, found)
 
@@ -151,6 +161,27 @@ def _over_piece(
     return replace(found, error=error, method=method, converged=converged, note=note)
 
 
+def _scattered(integrand: Callable[[FloatArray], Any]) -> Estimate:
+    """Integrate over a light through which the edge of a shadow runs, by shifted lattices."""
+    found = lowdiscrepancy.mean(integrand, dimensions=2, samples=_SCATTERED, rng=0)
+    return replace(
+        found,
+        error=8 * found.error,
+        kind="truncation",
+        method="lattice over the light",
+        converged=False,
+        note="a shadow's edge runs through the light: no rule can bound the error",
+        dof=None,
+    )
+
+
+def behind(emitter: Any, occluders: Any, receiver: Receiver) -> Emitter:
+    """Return a light as a receiver sees it behind occluders."""
+    light = check_emitter(emitter)
+    found = check_occluders(occluders)
+    return shadowed(light, found, receiver.origin) if found else light
+
+
 def crosses_horizon(light: Emitter, receiver: Receiver) -> bool:
     """Return whether a light that is sampled lies on both sides of the receiver's horizon."""
     x = np.linspace(0.0, 1.0, 65)
@@ -160,17 +191,34 @@ def crosses_horizon(light: Emitter, receiver: Receiver) -> bool:
     return bool(np.any(height > _ROUNDING) and np.any(height < -_ROUNDING))
 
 
-def solid_angle(emitter: Emitter, *, position: npt.ArrayLike = (0.0, 0.0, 0.0)) -> Estimate:
-    """Return the solid angle [sr] that an emitter subtends at ``position`` (3,) [m]; 0 for a delta light.
+def solid_angle(
+    emitter: Emitter,
+    *,
+    position: npt.ArrayLike = (0.0, 0.0, 0.0),
+    occluders: Occluder | Iterable[Occluder] = (),
+) -> Estimate:
+    """Return the solid angle [sr] of an emitter from ``position`` (3,) [m]; 0 for a delta light.
+
+    With ``occluders``, that of what is seen of it behind them.
 
     Raises
     ------
     ParameterError
-        When ``position`` is no point, or lies on the light.
+        When ``position`` is no point, or lies on the light or an occluder.
 
     >>> from radiokit.emitters.constant import Constant
     >>> round(float(solid_angle(Constant()).value) / np.pi, 12)
     4.0
     """
     receiver = Receiver(position=position)
-    return check_emitter(emitter).solid_angle(receiver.origin)
+    light = behind(emitter, occluders, receiver)
+    found = light.solid_angle(receiver.origin)
+    if found.converged or not isinstance(light, Shadowed):
+        return found
+
+    def seen(u: FloatArray) -> FloatArray:
+        towards, density = light.sample(u, receiver.origin)
+        lit = light.visible(towards, receiver.origin) & (density > 0)
+        return np.divide(1.0, density, out=np.zeros_like(density), where=lit)
+
+    return _scattered(seen)

@@ -11,9 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from radiokit.contracts.emitter import Emitter
+from radiokit.contracts.occluder import Occluder, check_occluders
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.montecarlo import seed_from
 from radiokit.worlds.planning import Plan, Row, make_plan
+from radiokit.worlds.scene import Receiver, behind
 
 __all__ = ["explain", "shade"]
 
@@ -30,6 +32,7 @@ def shade(
     samples: int | None = None,
     rng: int | np.random.Generator | None = None,
     executor: Executor | None = None,
+    occluders: Occluder | Iterable[Occluder] = (),
 ) -> Estimate:
     """Return the radiance Lo = ∫ f L cosθ dω [W m⁻² sr⁻¹] that a surface reflects towards ``wo``.
 
@@ -66,6 +69,8 @@ def shade(
         For Monte Carlo.
     executor : concurrent.futures.Executor, optional
         Runs the blocks of Monte Carlo; the answer does not depend on it.
+    occluders : Occluder or iterable of Occluder, optional
+        Opaque bodies between the lights and the surface; what they would reflect does not count.
 
     Returns
     -------
@@ -75,7 +80,7 @@ def shade(
     Raises
     ------
     ParameterError
-        When an argument is not allowed, or the surface lies on a light.
+        When an argument is not allowed, or the surface lies on a light or an occluder.
     UnknownNameError
         When there is no such method.
     RadiokitError
@@ -93,7 +98,7 @@ def shade(
     """
     plan = make_plan(
         f,
-        emitters,
+        _behind(emitters, occluders, position),
         wo,
         normal=normal,
         position=position,
@@ -107,6 +112,16 @@ def shade(
         found = _compute(row, method, rtol, samples, generator, executor)
         total = found if total is None else total + found
     return Estimate(0.0, 0.0, "rounding", method="sum", note="no light") if total is None else total
+
+
+def _behind(emitters: Any, occluders: Any, position: Any) -> Any:
+    """Return lights as they are seen behind occluders; as they are given, if there is none."""
+    found = check_occluders(occluders)
+    if not found:
+        return emitters
+    receiver = Receiver(position=position)
+    lights = [emitters] if isinstance(emitters, Emitter) else list(emitters)
+    return [behind(light, found, receiver) for light in lights]
 
 
 def _compute(
@@ -153,12 +168,13 @@ def explain(
     method: str = "auto",
     rtol: float = 1e-6,
     samples: int | None = None,
+    occluders: Occluder | Iterable[Occluder] = (),
 ) -> Plan:
     """Return the plan that ``shade`` would follow with the same arguments: a row for each term.
 
     Parameters
     ----------
-    f, emitters, normal, position, method, rtol, samples
+    f, emitters, normal, position, method, rtol, samples, occluders
         As in ``shade``.
     wo : array_like, shape (3,), optional
         Unit vector to the viewer; along the normal when not given.
@@ -177,7 +193,7 @@ def explain(
     """
     return make_plan(
         f,
-        emitters,
+        _behind(emitters, occluders, position),
         wo,
         normal=normal,
         position=position,

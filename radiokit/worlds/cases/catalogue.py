@@ -13,6 +13,7 @@ import numpy as np
 
 from radiokit.contracts.bsdf import BSDF
 from radiokit.contracts.emitter import Emitter
+from radiokit.contracts.occluder import Occluder
 from radiokit.facts.errors import RadiokitError, UnknownNameError
 from radiokit.facts.estimate import Estimate
 from radiokit.facts.jsonable import jsonable
@@ -45,6 +46,7 @@ class Scene:
     wo: Triple = (0.0, 0.0, 1.0)
     normal: Triple = (0.0, 0.0, 1.0)
     position: Triple = (0.0, 0.0, 0.0)
+    occluders: tuple[Occluder, ...] = ()
 
     def shade(
         self,
@@ -65,6 +67,7 @@ class Scene:
             rtol=rtol,
             rng=rng,
             samples=SAMPLES if samples is None else samples,
+            occluders=self.occluders,
         )
 
 
@@ -283,6 +286,7 @@ def _applies(scene: Scene, method: str) -> bool:
             normal=scene.normal,
             position=scene.position,
             method=method,
+            occluders=scene.occluders,
         )
     except RadiokitError:
         return False
