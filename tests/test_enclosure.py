@@ -344,6 +344,28 @@ def test_wavelengths_share_their_paths(seed):
         assert radiance(alone, **ask).value == pytest.approx(exact.value[k], rel=1e-14)
 
 
+def test_lamps_have_wavelengths_too(seed):
+    strengths, rho = (1.0, 3.0), (0.3, 0.6)
+    spectral = Point(position=(0.3, 0, 0), intensity=strengths)
+    room = Sphere(wall=grey(rho), caps=CAPS[:1], lights=spectral)
+    ask = {"position": (0, 0, -1), "direction": (0, 0.6, 0.8)}
+    walk = radiance(room, method="random walk", samples=8000, rng=seed, **ask)
+    exact, whole = radiance(room, **ask), flux(room, part=1)
+    assert np.all(z_test(walk, exact.value) > LEVEL)
+    panel = Rectangle(center=(0.5, 0.5, 1), normal=(0, 0, -1), width=0.5, height=0.25, radiance=strengths)
+    boxes = Box(walls=grey(rho), lights=panel)
+    lit = radiance(boxes, position=(0.5, 0.5, 0), direction=(0, 0, 1), samples=4000, rng=seed)
+    for k, (r, strength) in enumerate(zip(rho, strengths, strict=True)):
+        alone = Sphere(wall=grey(r), caps=CAPS[:1], lights=Point(position=(0.3, 0, 0), intensity=strength))
+        assert radiance(alone, **ask).value == pytest.approx(exact.value[k], rel=1e-14)
+        assert flux(alone, part=1).value == pytest.approx(whole.value[k], rel=1e-14)
+        one = Box(walls=grey(r), lights=dataclasses.replace(panel, radiance=strength))
+        found = radiance(one, position=(0.5, 0.5, 0), direction=(0, 0, 1), samples=4000, rng=seed)
+        assert abs(found.value - lit.value[k]) < 5 * np.hypot(found.error, lit.error[k])
+    with pytest.raises(ParameterError, match="of one number of wavelengths"):
+        Sphere(wall=grey((0.1, 0.2, 0.3)), lights=spectral)
+
+
 def test_a_question_stops_when_it_is_told(seed):
     room = Box(walls=grey(0.5, 1.0))
     ask = {"position": (0.5, 0.5, 0), "direction": (0, 0, 1), "method": "random walk", "rng": seed}

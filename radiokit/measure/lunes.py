@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from radiokit.measure.circlecone import CircleCone
 from radiokit.measure.exact import RationalVector, inner, rational
-from radiokit.measure.slope import gauss_legendre
+from radiokit.measure.gauss import gauss_legendre
 
 __all__ = ["NODES", "Arc", "Region"]
 

@@ -17,6 +17,7 @@ import numpy as np
 from radiokit.bsdfs.mirror import Mirror
 from radiokit.contracts.bsdf import BSDF
 from radiokit.contracts.mixture import Mixture
+from radiokit.contracts.spectral import amount
 from radiokit.emitters.point import Point
 from radiokit.facts.estimate import Estimate
 from radiokit.worlds.enclosure.rooms import FloatArray, Room, Wall
@@ -186,11 +187,11 @@ def _balance(room: Sphere) -> Light | None:
     return Light(room, value[()], error[()], False)
 
 
-def _direct(room: Sphere, light: Any) -> tuple[FloatArray, float]:
-    """Return the flux [W] that each part receives from a lamp itself, and a bound of its error."""
+def _direct(room: Sphere, light: Any) -> tuple[FloatArray, Any]:
+    """Return the flux [W] that each part receives from a lamp, (P,) or (P, K), and a bound of its error."""
     if not isinstance(light, Point):  # the sphere is of one piece, which receives all
         whole = light.flux()
-        return np.array([float(whole.value)]), float(whole.error)
+        return np.array([whole.value]), whole.error
     angles, error = room.solid_angles(np.array(light.position))
-    flux = light.intensity * angles
-    return flux, light.intensity * (error + 16 * _EPS * math.pi)
+    strength = amount(light.intensity)
+    return np.multiply.outer(angles, strength), strength * (error + 16 * _EPS * math.pi)

@@ -124,9 +124,10 @@ class Room(ABC):
         """How many wavelengths the room has; None when all is single numbers."""
         counts = {len(wall.emitted) for wall in self.parts if isinstance(wall.emitted, tuple)}
         counts |= {n for wall in self.parts if wall.f is not None and (n := wavelengths(wall.f)) is not None}
+        counts |= {n for light in self.lights if (n := light.wavelengths) is not None}
         if len(counts) > 1:
             allowed = f"of one number of wavelengths, not {' and '.join(map(str, sorted(counts)))}"
-            raise ParameterError("walls", list(dict.fromkeys(self.parts)), allowed)
+            raise ParameterError("walls and lights", [*dict.fromkeys(self.parts), *self.lights], allowed)
         return next(iter(counts), None)
 
     def _check(self) -> None:
@@ -137,7 +138,7 @@ class Room(ABC):
                     raise ParameterError("lights", light, "in a face of the box, shining inwards")
             elif not self.contains(np.array(light.position)):
                 raise ParameterError("lights", light, "inside the room")
-        _ = self.wavelengths  # the walls agree on their number
+        _ = self.wavelengths  # the walls and the lights agree on their number
 
 
 def check_wall(name: str, wall: Any) -> None:

@@ -76,7 +76,7 @@ def gather(
         wo = to_local(axes, direction)
         lamps = arriving(room.lights, position, generator)
         if has_panels:
-            total[path] += throughput * np.where(sees, shown(room.lights, position), 0.0)[:, None]
+            total[path] += throughput * np.where(sees[:, None], shown(room.lights, position), 0.0)
         sees = np.zeros(len(path), dtype=bool)
         alive = np.zeros(len(path), dtype=bool)
         onward = np.empty_like(wo)
@@ -113,7 +113,7 @@ def _lit(
     for towards, strength in zip(*lamps, strict=True):
         wi = to_local(axes, towards[rows])
         value = f.evaluate(wi, wo).reshape(len(rows), -1)
-        total = total + value * (np.maximum(wi[:, 2], 0.0) * strength[rows])[:, None]
+        total = total + value * np.maximum(wi[:, 2:], 0.0) * strength[rows]
     return total
 
 
@@ -153,5 +153,5 @@ def _falling(
     w = to_world(frame(normal), local)
     found = np.pi * gather(room, room.follow(position, w), -w, generator, panels=False)
     for towards, strength in zip(*arriving(room.lights, position, generator), strict=True):
-        found += (np.maximum(dot(towards, normal), 0.0) * strength)[:, None]
+        found += np.maximum(dot(towards, normal), 0.0)[:, None] * strength
     return np.asarray(found)
