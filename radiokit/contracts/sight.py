@@ -1,4 +1,4 @@
-"""Sight: a light from one point and the bodies before it: what is left of it, in closed form and in patches."""
+"""Sight: a light from one point and the bodies before it: what is left, in closed form and in patches."""
 
 from __future__ import annotations
 
@@ -8,20 +8,18 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, reduce
 from itertools import combinations, product
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from radiokit.contracts.emitter import Emitter, Silhouette
+from radiokit.contracts.holes import around, axis_of, joined_patches, pierced
 from radiokit.contracts.occluder import Occluder, blocked
-from radiokit.contracts.piece import Patch, fan
+from radiokit.contracts.piece import Patch
 from radiokit.facts.estimate import Estimate
-from radiokit.measure.circlecone import CircleCone
-from radiokit.measure.clip import Cone, sides
+from radiokit.measure.clip import sides
 from radiokit.measure.exact import RationalVector, cross, inner, rational
-from radiokit.measure.lattice import kronecker
-from radiokit.measure.lunes import NODES, Region
+from radiokit.measure.lunes import NODES
 from radiokit.physics.ball import Ball
 from radiokit.physics.eclipse import Body, Dome, Relation, place, relation
 from radiokit.physics.facets import Facets
@@ -29,7 +27,6 @@ from radiokit.physics.litparts import (
     above,
     cones_irradiance,
     cones_solid_angle,
-    corners,
     joined,
     lit_parts,
 )
@@ -64,8 +61,8 @@ def sight(light: Emitter, occluders: Sequence[Occluder], origin: FloatArray) -> 
         return Sight(light, origin, None, tuple((body, "unsure") for body in bodies))
     placed = [(body, relation(body, silhouette.body)) for body in bodies]
     kept = [pair for pair in placed if pair[1] != "apart"]
-    around = [pair for pair in kept if pair[1] == "around"]
-    return Sight(light, origin, silhouette, tuple(around[:1] or _undoubled(kept)))
+    covering = [pair for pair in kept if pair[1] == "around"]
+    return Sight(light, origin, silhouette, tuple(covering[:1] or _undoubled(kept)))
 
 
 def _undoubled(placed: list[tuple[Body, Relation]]) -> list[tuple[Body, Relation]]:
@@ -193,16 +190,16 @@ class Sight:
         holes = [body for body, _ in self.rounds]
         if isinstance(light, Facets) or (isinstance(light, Dome) and self.facets):
             cones = lit_parts(light, self.facets, normal)
-            return _joined(_around(cone, holes) for cone in cones)
+            return joined_patches(around(cone, holes) for cone in cones)
         horizon = rational(normal)
         if isinstance(light, Dome):
-            return _pierced([horizon, *light.normals], None, normal, holes)
+            return pierced([horizon, *light.normals], None, normal, holes)
         beside: list[list[RationalVector]] = [[horizon]]
         for body in self.facets:
             for part in body.parts:
                 beside = [rest for planes in beside for rest in _outside(planes, sides(part))]
-        axis = _axis(light)
-        return _joined(_pierced(planes, light.cone, axis, holes) for planes in beside)
+        axis = axis_of(light)
+        return joined_patches(pierced(planes, light.cone, axis, holes) for planes in beside)
 
 
 _BOTH = (np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, -1.0]))
@@ -225,95 +222,9 @@ def _less(whole: Estimate, hidden: Sequence[Estimate]) -> Estimate:
     return replace(whole + taken, value=max(value, 0.0), error=error)
 
 
-def _joined(parts: Any) -> list[Patch] | None:
-    found: list[Patch] = []
-    for part in parts:
-        if part is None:
-            return None
-        found += part
-    return found
-
-
 def _outside(planes: list[RationalVector], edges: Sequence[RationalVector]) -> Iterator[list[RationalVector]]:
     """Yield the parts of a region that are outside a convex cone of these edges."""
     inside = list(planes)
     for x, y, z in edges:
         yield [*inside, (-x, -y, -z)]
         inside = [*inside, (x, y, z)]
-
-
-def _around(cone: Cone, holes: Sequence[Ball | Plate]) -> Sequence[Patch] | None:
-    """Return patches of a convex cone of straight sides outside of round holes."""
-    met = []
-    for hole in holes:
-        if all(hole.cone.holds(p) for p in cone):
-            return ()
-        crossed = any(hole.cone.crossed_by(cone[k - 1], p) for k, p in enumerate(cone))
-        if crossed or all(_positive(side, hole.cone.center) for side in sides(cone)):
-            met.append(hole)
-    if not met:
-        return fan(corners(cone))
-    return _pierced(sides(cone), None, _axis(met[0]), met)
-
-
-def _positive(side: RationalVector, w: RationalVector) -> bool:
-    return side[0] * w[0] + side[1] * w[1] + side[2] * w[2] > 0
-
-
-def _pierced(
-    planes: Sequence[RationalVector], cone: CircleCone | None, axis: FloatArray, holes: Sequence[Ball | Plate]
-) -> list[Patch] | None:
-    """Return patches between planes and within a cone, outside of round holes.
-
-    Planes part holes that lie apart; those that overlap must have a direction in common.
-    """
-    for first, second in combinations(holes, 2):
-        plane = _between(first, second)
-        if plane is None:
-            continue
-        halves = []
-        for sign in (1, -1):
-            side = (sign * plane[0], sign * plane[1], sign * plane[2])
-            left = [hole for hole in holes if hole.cone.to_half_space(side) != "apart"]
-            halves.append(_pierced([*planes, side], cone, axis, left))
-        return _joined(halves)
-    middle = _common(holes) if holes else axis
-    return None if middle is None else list(Region(middle, planes, cone, [hole.cone for hole in holes]).arcs)
-
-
-def _common(holes: Sequence[Ball | Plate]) -> FloatArray | None:
-    """Return a direction inside of all of these cones, if one is found."""
-    axes = np.array([_axis(hole) for hole in holes])
-    for weights in (np.ones(len(axes)), *np.eye(len(axes)), *(np.eye(len(axes)) + 0.2), *_mixed(axes)):
-        middle = weights @ axes
-        size = float(np.sqrt(middle @ middle))
-        if size > 0 and all(hole.cone.holds(middle / size) for hole in holes):
-            return np.asarray(middle / size)
-    return None
-
-
-def _mixed(axes: FloatArray) -> FloatArray:
-    """Return weights (N, K), the evenly spread ones of K axes."""
-    weights = kronecker(64, max(len(axes), 2))[:, : len(axes)]
-    return np.asarray(weights / weights.sum(axis=1)[:, None])
-
-
-def _axis(body: Ball | Plate) -> FloatArray:
-    return body.axis if isinstance(body, Ball) else body.axes[2]
-
-
-def _between(first: Ball | Plate, second: Ball | Plate) -> RationalVector | None:
-    """Return a plane with one cone on its positive side and another on its negative one, if one is found."""
-    a, b = _axis(first), _axis(second)
-    across = np.cross(np.cross(a, b), a)
-    size = float(np.sqrt(across @ across))
-    if not size > 0:
-        return None
-    across /= size
-    angle = float(np.arctan2(size, a @ b))
-    for share in (0.5, *(np.arange(1, 32) / 32)):
-        s = angle * float(share)
-        plane = rational(np.sin(s) * a - np.cos(s) * across)
-        if (first.cone.to_half_space(plane), second.cone.to_half_space(plane)) == ("within", "apart"):
-            return plane
-    return None
