@@ -28,6 +28,7 @@ from radiokit.measure.lunes import Region
 from radiokit.measure.statistics import sidak, z_test
 from radiokit.physics.ball import Ball
 from radiokit.physics.eclipse import place, relation
+from radiokit.physics.facets import Facets
 from radiokit.physics.plate import Plate
 from radiokit.worlds.cases.catalogue import case
 from radiokit.worlds.scene import irradiance, solid_angle
@@ -389,6 +390,18 @@ def test_what_is_beyond_the_light_hides_nothing():
     assert relation(seen(0, 0, 3, 5.0), bulb) == "apart"  # and so is the bulb
     assert relation(Plate.seen((0, 0, 5), (0, 0, -1), 9.0, ORIGIN), bulb) == "apart"
     assert relation(Plate.seen((0, 0, 3), (0, 0, -1), 0.1, ORIGIN), bulb) == "within"
+
+
+def test_an_upright_wall_before_a_lamp_is_nearer_though_its_plane_cuts_the_lamp():
+    lamp = Ball.seen((0, 0, 2), 0.5, ORIGIN)
+    wall = np.array([(0.1, -3, 0.5), (0.1, 3, 0.5), (0.1, 3, 1.4), (0.1, -3, 1.4)])
+    front, back = (Facets.seen(np.add(wall, (0, 0, z)), ORIGIN, two_sided=True) for z in (0, 2.5))
+    assert relation(front, lamp) == "across"
+    assert relation(back, lamp) == "apart"
+    assert relation(lamp, front) == "apart"
+    assert relation(lamp, back) == "across"
+    blade = Plate.seen((0.2, 0, 1), (-1, 0, 0), 0.45, ORIGIN)
+    assert relation(blade, lamp) == "across"
 
 
 # --- what is left, at 30 digits ---

@@ -137,19 +137,18 @@ class CircleCone:
             return "across"
         return "around" if self.holds(other.center) else "apart"
 
-    def meetings(self, other: CircleCone) -> FloatArray:
-        """Return the unit vectors (N, 3) in which the surfaces of two cones cross, 4 at most."""
+    def meetings(self, other: CircleCone, frame: FloatArray) -> FloatArray:
+        """Return vectors (N, 3), in a frame of rows (3, 3), along which the surfaces of two cones cross."""
         import mpmath
 
+        found = []
         with working_precision(DIGITS):
-            p = self._harmonics(other)[0]
-            found = []
-            for root in _roots(p):
-                if abs(abs(root) - 1) < mpmath.mpf(10) ** (-DIGITS // 4):
-                    w = self._rim(mpmath.arg(root))
-                    length = mpmath.sqrt(sum(x * x for x in w))
-                    if other._seen(w)[2] > 0:
-                        found.append([float(x / length) for x in w])
+            for root in _roots(self._harmonics(other)[0]):
+                w = self._rim(mpmath.arg(root))
+                if abs(abs(root) - 1) < mpmath.mpf(10) ** (-DIGITS // 4) and other._seen(w)[2] > 0:
+                    size = max(map(abs, w))
+                    local = (sum(a * x for a, x in zip(row, w, strict=True)) for row in frame.tolist())
+                    found.append([float(x / size) for x in local])
         return np.array(found).reshape(-1, 3)
 
     def _rim(self, angle: Any) -> list[Any]:

@@ -163,9 +163,7 @@ class Region:
             if form[2, 2] < 0:  # the axis is outside
                 found += _zeros(np.outer(form[2, :2], form[2, :2]) - form[2, 2] * form[:2, :2])
         for cone, other in combinations(self._cones, 2):
-            for w in other.meetings(cone):
-                x, y, _ = self.frame @ w
-                found.append(float(np.arctan2(y, x)))
+            found += [np.arctan2(w[1], w[0]) for w in other.meetings(cone, self.frame)]
         return found
 
     def _scale(self) -> FloatArray:

@@ -7,14 +7,19 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal
 
+import numpy as np
+import numpy.typing as npt
+
 from radiokit.measure.circlecone import Place
 from radiokit.measure.clip import Cone, cut, has_area, sides, without
-from radiokit.measure.exact import RationalVector, cross, inner
+from radiokit.measure.exact import RationalVector, cross, inner, rational
 from radiokit.physics.ball import Ball
 from radiokit.physics.facets import Facets
 from radiokit.physics.plate import Plate
 
 __all__ = ["TIE", "Body", "Dome", "Relation", "before", "order", "place", "relation"]
+
+FloatArray = npt.NDArray[np.float64]
 
 TIE = Fraction(1, 2**40)
 """What is nearer than a light by less than this share of the distance is at the light, and hides nothing."""
@@ -150,7 +155,8 @@ def order(body: Body, light: Body | Dome) -> Order:
         return "nearer"
     if isinstance(light, Ball) and _holds(light, body):
         return "farther"
-    return _by_bounds(body, light)
+    found = _by_bounds(body, light)
+    return _by_nearest(body, light) if found == "mixed" else found
 
 
 def _by_bounds(body: Body, light: Body) -> Order:
@@ -163,6 +169,41 @@ def _by_bounds(body: Body, light: Body) -> Order:
     share = first / (first + second)
     between = inner(way, a) + share * square  # of the plane's points; the origin's is 0
     return "nearer" if between >= 0 else "farther"
+
+
+def _by_nearest(body: Body, light: Body) -> Order:
+    """Decide between a ball and a flat body by the plane across the shortest way from one to the other."""
+    ball, flat = (body, light) if isinstance(body, Ball) else (light, body)
+    if not isinstance(ball, Ball) or isinstance(flat, Ball):
+        return "mixed"
+    center = np.array([float(x) for x in ball.towards])
+    nearest = _nearest(flat, center)
+    way = center - nearest
+    size = float(np.sqrt(way @ way))
+    gap = size - float(ball.radius)
+    if not gap > 0:
+        return "mixed"
+    q = rational(way / size)
+    k = inner(q, rational(nearest + 0.5 * gap * way / size))
+    if not (_sides(ball, q, k)[0] and _sides(flat, q, k)[1]):
+        return "mixed"
+    return "nearer" if (flat is body) == (k >= 0) else "farther"
+
+
+def _nearest(flat: Plate | Facets, point: FloatArray) -> FloatArray:
+    """Return the point of a flat body's edge that is nearest to another point, but for rounding."""
+    if isinstance(flat, Plate):
+        center, normal = (np.array([float(x) for x in v]) for v in (flat.center, flat.normal))
+        aside = point - center
+        aside = aside - (aside @ normal) / (normal @ normal) * normal
+        length = float(np.sqrt(aside @ aside))
+        return center + (float(flat.size) / length if length > 0 else 0.0) * aside
+    start = np.array([[float(x) for x in p] for p in flat.outline])
+    side = np.roll(start, -1, axis=0) - start
+    share = np.clip(np.sum((point - start) * side, axis=1) / np.sum(side * side, axis=1), 0.0, 1.0)
+    places = start + share[:, None] * side
+    nearest: FloatArray = places[np.argmin(np.sum((places - point) ** 2, axis=1))]
+    return nearest
 
 
 def _bounds(body: Body) -> tuple[RationalVector, Fraction]:
