@@ -17,6 +17,7 @@ from radiokit.bsdfs.ggx import GGX
 from radiokit.bsdfs.lambert import Lambert
 from radiokit.bsdfs.mirror import Mirror
 from radiokit.bsdfs.phong import Phong
+from radiokit.contracts import holes, sight
 from radiokit.contracts.emitter import emitter
 from radiokit.contracts.occluder import Occluder, list_occluders, occluder
 from radiokit.contracts.shadowed import Shadowed, shadowed
@@ -831,6 +832,28 @@ def test_wrong_shadows_are_rejected(monkeypatch, seed):
             .blocks(directions, ORIGIN, behind.distance_along(directions, ORIGIN))
             .any()
         )
+
+
+def test_wrong_closed_forms_and_wrong_patches_are_rejected(monkeypatch):
+    def verdict(name, method):
+        return case(name).verdict(method).outcome
+
+    shadows = ("lambert-in-annular-eclipse", "lambert-under-sky-behind-two-balls")
+    for name in shadows:
+        assert verdict(name, "closed form") is verdict(name, "quadrature") is Outcome.HOLDS
+    with monkeypatch.context() as planted:  # nothing is taken away
+        planted.setattr(sight, "_less", lambda whole, hidden: whole)
+        assert all(verdict(name, "closed form") is Outcome.VIOLATED for name in shadows)
+    with monkeypatch.context() as planted:  # the holes are filled, which the lattice beside the rule sees
+        planted.setattr(holes, "Region", lambda axis, planes, cone, gaps: Region(axis, planes, cone))
+        assert all(verdict(name, "quadrature") is not Outcome.HOLDS for name in shadows)
+    with monkeypatch.context() as planted:  # what is behind a light hides it
+        planted.setattr(sight, "relation", place)
+        wall = case("lambert-under-square-below-wall").scene
+        behind = Shadowed(light=dataclasses.replace(wall.emitters[0], radiance=2.0), occluders=wall.occluders)
+        assert behind.hides(ORIGIN)
+        ball_behind = Shadowed(light=sun(1.5), occluders=(ball(0, 0, 9, 0.5),))
+        assert ball_behind.irradiance_at(ORIGIN, UP).value < irradiance(sun(1.5)).value
 
 
 # --- the registry, and errors ---
