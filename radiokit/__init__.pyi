@@ -1,5 +1,6 @@
 from . import bsdfs as bsdfs
 from . import emitters as emitters
+from . import occluders as occluders
 from .checks.judge import check as check
 from .contracts.albedo import albedo as albedo
 from .contracts.blackbox import as_bsdf as as_bsdf
@@ -15,12 +16,17 @@ from .contracts.emitter import emitter as emitter
 from .contracts.emitter import list_emitters as list_emitters
 from .contracts.mixture import mixture as mixture
 from .contracts.mixture import scaled as scaled
+from .contracts.occluder import Occluder as Occluder
+from .contracts.occluder import list_occluders as list_occluders
+from .contracts.occluder import occluder as occluder
 from .contracts.parameters import parameter as parameter
 from .contracts.scalar import Kernels as Kernels
 from .contracts.scalar import ScalarBSDF as ScalarBSDF
 from .faces.modeltable import models_table as models_table
 from .faces.plots.lobe import save_lobe as save_lobe
 from .faces.plots.lobe import show_lobe as show_lobe
+from .faces.render.furnace import furnace_image as furnace_image
+from .faces.render.render import render as render
 from .facts import directions as directions
 from .facts import errors as errors
 from .facts.estimate import Estimate as Estimate
@@ -38,7 +44,9 @@ from .measure.kernels import kernel as kernel
 from .measure.kernels import select as select
 from .measure.twin import Twin as Twin
 from .physics import fresnel as fresnel
+from .physics import integrating_sphere as integrating_sphere
 from .physics import view_factor as view_factor
+from .worlds import enclosure as enclosure
 from .worlds.cases.catalogue import case as case
 from .worlds.cases.catalogue import list_cases as list_cases
 from .worlds.enclosure import enclosure_radiance as enclosure_radiance

@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import ast
 import dataclasses
+import importlib.util
 import inspect
 import itertools
 import pickle
+import sys
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
@@ -1057,23 +1059,68 @@ def test_the_judge_agrees_with_the_sampler(name, parameters):
 # The file
 
 
-@models
-def test_the_file_keeps_the_order_and_stands_alone(row):
-    model = type(bsdf(row.name))
+def faults(model: type[Any]) -> list[str]:
+    """Return what to do about a model's file: its source, its order, its docstring, its imports."""
     module = inspect.getmodule(model)
-    assert module is not None
-    source = model.SOURCE
-    assert source is module.SOURCE
-    assert all((source.authors, source.year, source.title, source.equation))
+    where = getattr(module, "__file__", model.__module__)
+    found = []
+    source = getattr(model, "SOURCE", None)
+    if source is None or source is not getattr(module, "SOURCE", None):
+        found.append(
+            f"{where}: write SOURCE = Source(authors=..., year=..., title=..., equation=...) below the "
+            f"imports, and SOURCE = SOURCE in {model.__name__}"
+        )
+    else:
+        for name in ("authors", "year", "title", "equation"):
+            if not getattr(source, name):
+                found.append(f"{where}: give SOURCE its {name}, so that a reader can look the formula up")
     order = [
         name for name in vars(model) if name in ("symbolic", "kernels", "evaluate", "pdf", "sample", "claims")
     ]
-    assert order in (["symbolic", "kernels", "claims"], ["symbolic", "evaluate", "pdf", "sample", "claims"])
-    assert (module.__doc__ or "").count("\n") > 1, "say what the model is, and when to use it"
-    imports = [
-        node for node in ast.walk(ast.parse(inspect.getsource(module))) if isinstance(node, ast.ImportFrom)
-    ]
-    assert not [node.module for node in imports if (node.module or "").startswith("radiokit.bsdfs")]
+    if order not in (
+        ["symbolic", "kernels", "claims"],
+        ["symbolic", "evaluate", "pdf", "sample", "claims"],
+    ):
+        found.append(f"{where}: define symbolic, kernels and claims, in this order; it has {order}")
+    if not (module is not None and (module.__doc__ or "").count("\n") > 1):
+        found.append(f"{where}: let the module's docstring say what the model is, and when to use it")
+    nodes = ast.walk(ast.parse(inspect.getsource(module))) if module is not None else ()
+    for node in nodes:
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("radiokit.bsdfs"):
+            found.append(f"{where}: move what it shares with {node.module} to radiokit/physics")
+    return found
+
+
+@models
+def test_the_file_keeps_the_order_and_stands_alone(row):
+    assert faults(type(bsdf(row.name))) == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("    SOURCE = SOURCE\n", "", "velvet.py: write SOURCE = Source(authors="),
+        ("year=1977", "year=0", "velvet.py: give SOURCE its year, so that a reader"),
+        ("def symbolic", "def symbols", "velvet.py: define symbolic, kernels and claims, in this order"),
+        (
+            "import numpy as np\n",
+            "import numpy as np\nfrom radiokit.bsdfs.ggx import GGX\n",
+            "velvet.py: move",
+        ),
+    ],
+)
+def test_a_file_that_lacks_something_is_told_what_to_do(old, new, message, tmp_path, monkeypatch):
+    """Planted: Lambert's own file under another name, with a fault."""
+    text = inspect.getsource(inspect.getmodule(Lambert))
+    assert old in text
+    path = tmp_path / "velvet.py"
+    path.write_text(text.replace(old, new))
+    spec = importlib.util.spec_from_file_location("velvet", path)
+    module = importlib.util.module_from_spec(spec)
+    monkeypatch.setitem(sys.modules, "velvet", module)
+    spec.loader.exec_module(module)
+    (found,) = faults(module.Lambert)
+    assert message in found
 
 
 @cases("ordinary", "hard")

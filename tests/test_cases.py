@@ -172,6 +172,57 @@ def series(reflectance):
     return mpmath.nsum(lambda k: mpf(reflectance) ** k, [0, mpmath.inf])
 
 
+def sphere(reflectances, shares, first):
+    """The irradiance Σ fⱼBⱼ in a diffuse sphere whose parts' exitances solve Bᵢ = Mᵢ + ρᵢ Σ fⱼBⱼ."""
+    rho, f = [mpf(r) for r in reflectances], [mpf(share) for share in shares]
+    n = len(rho)
+    system = mpmath.matrix(n, n)
+    for i, j in itertools.product(range(n), repeat=2):
+        system[i, j] = (i == j) - rho[i] * f[j]
+    exitance = mpmath.lu_solve(system, mpmath.matrix(first))
+    return sum(f[j] * exitance[j] for j in range(n))
+
+
+def three_ports():
+    """The lamp emits π W/m² from 2 % of the sphere."""
+    return sphere(["0.9", "0.2", "0.4", "0"], ["0.94", "0.02", "0.03", "0.01"], [0, mpmath.pi, 0, 0])
+
+
+def lamps_on_floor():
+    """Σ cosθ/d² at (0, 0, −1) for the four lamps, from their places."""
+    places = (("0.6", "0", "-0.2"), ("-0.6", "0", "-0.2"), ("0", "0.3", "-0.6"), ("0", "0", "0.5"))
+    total = mpf(0)
+    for x, y, z in places:
+        height = mpf(z) + 1
+        total += height / (mpf(x) ** 2 + mpf(y) ** 2 + height**2) ** mpf("1.5")
+    return total
+
+
+def facing(x, y):
+    """Howell's C-11, of equal parallel rectangles x by y at distance 1."""
+    p, q = 1 + x * x, 1 + y * y
+    return 2 / (mpmath.pi * x * y) * (
+        mpmath.log(p * q / (1 + x * x + y * y)) / 2
+        + x * mpmath.sqrt(q) * mpmath.atan(x / mpmath.sqrt(q))
+        + y * mpmath.sqrt(p) * mpmath.atan(y / mpmath.sqrt(p))
+        - x * mpmath.atan(x)
+        - y * mpmath.atan(y)
+    )  # fmt: skip
+
+
+def aside(h, w):
+    """Howell's C-14, of rectangles of depths w and h at a common edge of length 1."""
+    a, b = h * h, w * w
+    logs = (
+        mpmath.log((1 + a) * (1 + b) / (1 + a + b))
+        + b * mpmath.log(b * (1 + a + b) / ((1 + b) * (a + b)))
+        + a * mpmath.log(a * (1 + a + b) / ((1 + a) * (a + b)))
+    )
+    far = mpmath.sqrt(a + b)
+    angles = w * mpmath.atan(1 / w) + h * mpmath.atan(1 / h) - far * mpmath.atan(1 / far)
+    return (angles + logs / 4) / (mpmath.pi * w)
+
+
 def highlight(alpha, theta_deg):
     """f cosθ E⊥ at the mirror pair, factor by factor from the model's definition."""
     a, theta = mpf(alpha), deg(theta_deg)
@@ -254,6 +305,43 @@ ROUND = {
     "lambert-under-sphere-in-horizon": lambda: under_sphere(mpf("0.5"), 0),
     "lambert-under-sphere-10deg-below-horizon": lambda: under_sphere(mpf("0.5"), -10),
     "lambert-wall-beside-sphere": lambda: under_sphere(1 / (1 + mpf(2) ** -20), 0),
+}
+
+
+def partial_eclipse():
+    """ρ/π ∫ cosθ dω in rings about the normal, less the azimuths that the other sphere hides."""
+    sun, moon = mpmath.asin(mpf(1) / 4), mpmath.asin(mpf("0.5") / mpmath.sqrt(mpf("4.16")))
+    aside = mpmath.atan(mpf(1) / 5)
+
+    def ring(theta):
+        across = mpmath.sin(theta) * mpmath.sin(aside)
+        edge = (mpmath.cos(moon) - mpmath.cos(theta) * mpmath.cos(aside)) / across
+        hidden = mpmath.acos(min(edge, mpf(1)))
+        return 2 * (mpmath.pi - hidden) * mpmath.cos(theta) * mpmath.sin(theta)
+
+    return mpmath.quad(ring, [moon - aside, sun]) / (2 * mpmath.pi)  # the zenith is dark
+
+
+SHADOWS = {
+    "lambert-in-total-eclipse": lambda: mpf(0),
+    "lambert-in-annular-eclipse": lambda: under_sphere(mpf(1) / 4, 90) - under_sphere(mpf(1) / 5, 90),
+    "lambert-in-partial-eclipse": partial_eclipse,
+    "phong-10-in-annular-eclipse": lambda: phong_cone(mpf("0.9375")) - phong_cone(mpf("0.96")),
+    "mirror-in-annular-eclipse": lambda: mpf(0),
+    "lambert-under-disk-behind-disk": lambda: under_disk(1, 2, 0) - under_disk(mpf(1) / 4, 1, 0),
+    "lambert-under-disk-behind-speck": lambda: under_disk(1, 2, 0) - under_disk(mpf(10) ** -6, 1, 0),
+    "lambert-under-sky-behind-disk": lambda: sky("0") - under_disk(1, 1, 0),
+    "lambert-under-sky-beside-ball": lambda: sky("0") - under_sphere(mpf(1) / 2, 0),
+    "lambert-under-sky-behind-two-balls": lambda: (
+        sky("0")
+        - under_sphere(mpf(1) / 2, 90)
+        - under_sphere(mpf(1) / 4, mpmath.degrees(mpmath.asin(mpf(3) / 5)))
+    ),
+    "lambert-under-overcast-sky-behind-ball": lambda: mpmath.quad(
+        lambda t: overcast(mpmath.cos(t)) * mpmath.sin(t) * mpmath.cos(t), [deg(30), deg(90)]
+    ),
+    "lambert-under-point-behind-ball": lambda: mpf(0),
+    "lambert-under-point-beside-ball": lambda: mpf(1) / 2 / mpmath.pi,
 }
 
 
@@ -371,6 +459,10 @@ POLYGONS = {
     "lambert-under-triangle-touching-horizon": lambda: shadow([(1, 0, 0), (1, -0.5, 1), (1, 0.5, 1)]),
     "lambert-under-sliver": lambda: shadow([(-1, -0.5, 1), (0, 0.25 + 2.0**-20, 1), (1, 1, 1)]),
     "lambert-beside-skirting": lambda: shadow(wall(0, 2.0**-10)),
+    "lambert-under-half-of-square": lambda: shadow(block(-1, 1, -1, 1)) / 2,
+    "lambert-under-square-behind-square": lambda: shadow(block(-1, 1, -1, 0.5), block(-1, 0.5, 0.5, 1)),
+    "lambert-under-square-below-wall": lambda: shadow(block(-1, 1, -1, 1)),
+    "lambert-in-courtyard": lambda: shadow(block(-1, 1, -1, 1)),
     **{f"phong-{n}-under-octant": lambda: mpf(1) / 4 for n in (1, 20, 200)},
     "phong-1-under-square": lambda: lobe(PANEL, 1, (-0.6, 0, 0.8)),
     "phong-20-under-square": lambda: lobe(PANEL, 20, (0.6, 0, 0.8)),
@@ -382,6 +474,7 @@ POLYGONS = {
 
 EXACT = {
     **ROUND,
+    **SHADOWS,
     "lambert-in-furnace": lambda: mpf(1) / 2,
     "mirror-in-furnace": lambda: mpf(0.9),
     **{f"phong-10-in-furnace-at-{t}deg": lambda t=t: phong(10, t) for t in (0, 30, 60, 80)},
@@ -441,6 +534,33 @@ EXACT = {
         mpmath.cos(deg(45)) / (2 * mpmath.pi * (1 + mpmath.cos(deg(45))))
     ),
     **{f"lambert-enclosure-{r}": lambda r=r: series(float(r)) for r in ("0.1", "0.5", "0.9")},
+    "box-of-equal-walls": lambda: sphere(["0.6"], ["1"], [1]),
+    "sphere-of-mixed-wall": lambda: sphere(["0.7"], ["1"], [1]),
+    "spectral-sphere": lambda: sphere(["0.2"], ["1"], [1]),
+    "sphere-with-emitting-wall": lambda: sphere(["0.5"], ["1"], [mpf("0.5")]),
+    "furnace-box": lambda: mpf(1),
+    "furnace-box-of-mirrors-and-paint": lambda: mpf(1),
+    "sphere-with-lamp-at-centre": lambda: sphere(["0.5"], ["1"], [mpmath.pi / 2]) / mpmath.pi,
+    "sphere-with-four-lamps": lambda: (
+        (lamps_on_floor() * 45 * mpmath.pi / 208 + sphere(["0.5"], ["1"], [4 * 45 * mpmath.pi / 416]))
+        / 2 / mpmath.pi
+    ),
+    "sphere-with-four-lamps-on-average": lambda: sphere(["0.5"], ["1"], [mpmath.pi / 2]) / mpmath.pi,
+    "integrating-sphere-one-port": lambda: (
+        (1 + sphere(["0.95", "0"], ["0.98", "0.02"], [mpf("0.95"), 0])) / (4 * mpmath.pi**2)
+    ),
+    "integrating-sphere-two-ports": lambda: (
+        sphere(["0.5", "0", "0"], ["0.96", "0.02", "0.02"], [mpf("0.5") / mpf("0.96"), 0, 0])
+        / (4 * mpmath.pi**2)
+    ),
+    "integrating-sphere-three-ports": lambda: three_ports() / mpmath.pi,
+    "integrating-sphere-sample": lambda: mpf("0.4") * three_ports() / mpmath.pi,
+    "integrating-sphere-0.99": lambda: mpf("0.99") / (4 * mpmath.pi**2) * (
+        1 + sphere(["0.99", "0"], ["0.97", "0.03"], [mpf("0.99"), 0])
+    ),
+    "blackbody-cavity": lambda: sphere(["0.3", "0"], ["0.9", "0.1"], [mpf("0.7"), 0]),
+    "black-box-opposite-wall": lambda: facing(mpf(3) / 2, mpf(4) / 2),
+    "black-box-next-wall": lambda: aside(mpf(3) / 4, mpf(2) / 4),
 }  # fmt: skip
 NUMERIC = {
     "ggx-0.3-in-furnace-at-60deg": ("0.3", 60, 40),
@@ -527,6 +647,7 @@ def test_a_case_is_complete(item):
             item.scene.wo,
             normal=item.scene.normal,
             position=item.scene.position,
+            occluders=item.scene.occluders,
         )
         assert auto.converged
         assert auto.is_bound

@@ -12,6 +12,7 @@ from radiokit.checks.reciprocity import reciprocity
 from radiokit.checks.sampling import sampling
 from radiokit.checks.values import values
 from radiokit.contracts.blackbox import as_bsdf
+from radiokit.contracts.bsdf import bsdf
 from radiokit.facts.directions import spherical_to_cartesian
 from radiokit.facts.errors import ParameterError, UnknownNameError
 from radiokit.facts.verdict import Outcome
@@ -357,6 +358,35 @@ def test_sampling_rejects_a_wrong_sampler(f, says, seed):
     assert verdict.outcome is Outcome.VIOLATED
     assert says in verdict.message
     assert verdict.witness is not None
+
+
+LONG = {  # lobes up to a thousand times as long as wide
+    "ggx, 1 : 100": (bsdf("ggx", alpha_x=0.01, alpha_y=1.0), Outcome.HOLDS),
+    "ggx, 1 : 1000": (bsdf("ggx", alpha_x=0.001, alpha_y=1.0), None),
+    "beckmann, 1 : 1000": (bsdf("beckmann", alpha_x=0.001, alpha_y=1.0), None),
+}
+
+
+@pytest.mark.parametrize(("f", "outcome"), LONG.values(), ids=LONG)
+def test_a_long_and_narrow_lobe_is_never_called_wrong(f, outcome, seed):
+    found = sampling(f, seed=seed).outcome
+    assert found is not Outcome.VIOLATED
+    assert outcome in (None, found)
+
+
+@pytest.mark.parametrize("wrong", [{"alpha_x": 0.007, "alpha_y": 0.8}, {"alpha_x": 0.01, "alpha_y": 0.88}])
+def test_a_wrong_sampler_of_a_long_and_narrow_lobe_is_rejected(wrong, seed):
+    """Planted: a width that is off across the lobe, where cells are broad, or along it."""
+    right, other = bsdf("ggx", alpha_x=0.01, alpha_y=0.8), bsdf("ggx", **wrong)
+
+    def sample(u, wo):
+        wi, _ = other.sample(u, wo)
+        density = np.where(wi[:, 2] > 0, right.pdf(wi, wo), 1.0)
+        return wi, right.evaluate(wi, wo) * wi[:, 2] / density
+
+    verdict = sampling(as_bsdf(right.evaluate, pdf=right.pdf, sample=sample), seed=seed)
+    assert verdict.outcome is Outcome.VIOLATED
+    assert "chi-square" in verdict.message
 
 
 # ----------------------------------------------------------------------------------------------- judge

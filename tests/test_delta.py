@@ -8,7 +8,7 @@ import sympy
 
 from radiokit.contracts.bsdf import bsdf
 from radiokit.facts.directions import refract, spherical_to_cartesian
-from radiokit.measure.slope import gauss_legendre
+from radiokit.measure.gauss import gauss_legendre
 from radiokit.measure.twin import Twin, scaled_ulps
 
 INDICES = (1.5, 1 / 1.5, 2.42, 1 + 1e-12, 1 - 1e-12, 1e-3, 1e3)

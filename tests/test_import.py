@@ -80,6 +80,7 @@ def test_every_module_says_in_its_first_line_what_belongs_in_it():
         "contracts",
         "bsdfs",
         "emitters",
+        "occluders",
         "checks",
         "worlds",
         "faces",

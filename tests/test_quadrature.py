@@ -9,8 +9,9 @@ import pytest
 from radiokit.facts.directions import spherical_to_cartesian
 from radiokit.facts.errors import NonFiniteError, ParameterError
 from radiokit.measure.converge import converge
+from radiokit.measure.gauss import gauss_legendre
 from radiokit.measure.quadrature import box, hemisphere
-from radiokit.measure.slope import find_lobe, gauss_legendre, slope_inverse, slope_map, slope_rule
+from radiokit.measure.slope import find_lobe, slope_inverse, slope_map, slope_rule
 
 ANGLES_DEG = (0.0, 30.0, 60.0, 80.0, 89.0, 89.9, 89.99)
 
@@ -284,3 +285,33 @@ def test_polar_rules_are_not_believed_where_they_are_cut_in_the_wrong_place(turn
     exact = hemisphere(lambda w: rough_diffuse(w, away), wo=away, rtol=1e-10)
     assert found.method != "polar quadrature"
     assert abs(found.value - exact.value) <= found.error + exact.error
+
+
+# Surfaces whose f is cut off at 0
+
+
+def tilted(w, theta, phi):
+    """The cosine with a direction, 0 behind it: over the upper hemisphere it makes π (1 + cosθ)/2."""
+    n = np.array([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)])
+    return np.maximum(w @ n, 0.0)
+
+
+@pytest.mark.parametrize("theta_deg", [1.0, 20.0, 60.0, 89.0, 120.0, 179.0])
+@pytest.mark.parametrize("turn", [0.0, np.pi])
+def test_light_that_ends_along_a_curve_takes_few_evaluations(theta_deg, turn):
+    wo, theta = toward(50.0), np.radians(theta_deg)
+    found = hemisphere(lambda w: tilted(w, theta, 0.4 + turn), wo=wo, rtol=1e-10)
+    exact = np.pi * np.cos(theta / 2) ** 2
+    assert found.converged
+    assert found.evaluations < 150_000  # of which most find where the light ends
+    assert abs(found.value - exact) <= found.error <= 1e-10 * exact
+
+
+@pytest.mark.parametrize("turn", [0.3, 1.4, 2.5])
+def test_light_that_ends_twice_on_a_circle_is_not_believed_too_early(turn):
+    """Planted: an end that each quarter's search cannot follow, for it may come back within a quarter."""
+    wo = toward(50.0)
+    for theta in (0.4, 1.5):
+        found = hemisphere(lambda w, t=theta: tilted(w, t, turn), wo=wo, rtol=1e-8)
+        exact = np.pi * np.cos(theta / 2) ** 2
+        assert abs(found.value - exact) <= found.error

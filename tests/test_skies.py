@@ -406,7 +406,7 @@ def test_maps_are_values():
     ("bad", "name"),
     [
         ([1.0, 2.0], r"radiance\.shape = \(2,\)"),
-        (np.ones((2, 2, 3)), r"radiance\.shape = \(2, 2, 3\)"),
+        (np.ones((2, 2, 3, 1)), r"radiance\.shape = \(2, 2, 3, 1\)"),
         (np.zeros((0, 3)), r"radiance\.shape"),
         ([[1.0, -1.0]], r"radiance\[0, 1\] = -1\.0"),
         ([[1.0], [math.nan]], r"radiance\[1, 0\] = nan"),

@@ -21,8 +21,8 @@ from radiokit.contracts.facets import WIDTH, FacetBSDF
 from radiokit.contracts.parameters import parameter
 from radiokit.contracts.scalar import Kernels
 from radiokit.facts.source import Source
+from radiokit.measure.gauss import gauss_legendre
 from radiokit.measure.kernels import Kernel, bind
-from radiokit.measure.slope import gauss_legendre
 from radiokit.measure.twin import Twin
 from radiokit.physics.microfacet import cosine_symbolic, groove_symbolic
 from radiokit.physics.reflection import BECKMANN, Law

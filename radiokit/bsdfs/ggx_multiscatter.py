@@ -20,8 +20,9 @@ from radiokit.contracts.scalar import Kernels, ScalarBSDF
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.source import Source
 from radiokit.measure.elementary import log1p
+from radiokit.measure.gauss import gauss_legendre
 from radiokit.measure.kernels import Kernel, bind, kernel, select
-from radiokit.measure.slope import gauss_legendre, slope_rule
+from radiokit.measure.slope import slope_rule
 from radiokit.measure.twin import Twin
 from radiokit.measure.vectors import from_disk
 from radiokit.physics import fresnel
@@ -182,13 +183,16 @@ def _loss_symbolic(alpha: float) -> Any:
     def series_sum(mu: Any, per_span: Any, even: Any, odd: Any) -> Any:
         import mpmath
 
-        width = mpmath.mpf(alpha)
-        t = 2 * mpmath.root(mpmath.asinh(mu / width) * per_span, 4) - 1
-        total, before, term = even * series[0], mpmath.mpf(1), t
+        if isinstance(mu, np.ndarray):  # of floats, with which the nodes of an integral are planned
+            steep, asinh, sqrt = np.maximum(mu, 0.0) / alpha, np.arcsinh, np.sqrt
+        else:
+            steep, asinh, sqrt = mu / mpmath.mpf(alpha), mpmath.asinh, mpmath.sqrt
+        t = 2 * sqrt(sqrt(asinh(steep) * per_span)) - 1
+        total, before, term = even * series[0], 1, t
         for k, coefficient in enumerate(series[1:], start=1):
             total += (odd if k % 2 else even) * coefficient * term
             before, term = term, 2 * t * term - before
-        return total / mpmath.sqrt(1 + (mu / width) ** 2)
+        return total / sqrt(1 + steep**2)
 
     return implemented_function("L", series_sum)
 

@@ -19,8 +19,8 @@ from radiokit.contracts.parameters import Spectrum, parameter
 from radiokit.contracts.scalar import Kernels, ScalarBSDF
 from radiokit.facts.source import Source
 from radiokit.measure.elementary import exp, log
+from radiokit.measure.gauss import gauss_legendre
 from radiokit.measure.kernels import kernel, select
-from radiokit.measure.slope import gauss_legendre
 from radiokit.measure.twin import Twin
 from radiokit.physics.cosine_lobe import lobe_sample, median_slope
 

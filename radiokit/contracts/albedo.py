@@ -17,7 +17,7 @@ from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.measure import lowdiscrepancy
 from radiokit.measure.quadrature import hemisphere
-from radiokit.measure.transmission import sphere, transmission
+from radiokit.measure.transmission import reflection_edges, sphere, transmission
 
 __all__ = ["Part", "Side", "albedo", "delta_albedo", "directional_albedo", "integrand", "radiance_to_flux"]
 
@@ -182,16 +182,17 @@ def directional_albedo(
         "max_evaluations": max_evaluations,
     }
     value = integrand(model, fixed_direction, fixed)
+    eta = float(model.relative_index() ** np.sign(fixed_direction[2]))
     if not model.transmissive:
         found = hemisphere(value, **options)
         found = found if side != "transmitted" else found.scaled(0.0)
     elif side == "reflected":
         below = fixed_direction[2] < 0
         options["wo"] = _mirror(fixed_direction) if below else fixed_direction
-        found = hemisphere((lambda w: value(_mirror(w))) if below else value, **options)
+        own = (lambda w: value(_mirror(w))) if below else value
+        found = hemisphere(own, edges=reflection_edges(eta), **options)
     else:
-        eta = model.relative_index() ** np.sign(fixed_direction[2])
-        found = (sphere if side == "both" else transmission)(value, eta=float(eta), **options)
+        found = (sphere if side == "both" else transmission)(value, eta=eta, **options)
     delta = delta_albedo(model, fixed_direction, side)
     if not np.any(delta):
         return replace(found, error=found.error + 4 * model.precision * np.abs(found.value))

@@ -4,20 +4,33 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.contracts.parameters import check_parameters
+from radiokit.contracts.parameters import Spectrum, check_parameters, spectrum_length
 from radiokit.contracts.registry import Registry
 from radiokit.contracts.vectors import check_vectors
 from radiokit.facts.errors import RadiokitError
 from radiokit.facts.estimate import Estimate
+from radiokit.physics.eclipse import Body, Dome
 
-__all__ = ["REGISTRY", "Emitter", "emitter", "list_emitters"]
+__all__ = ["REGISTRY", "Emitter", "Silhouette", "emitter", "list_emitters"]
 
 FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Silhouette:
+    """The directions from which a light shines, as one point sees them; within them its radiance is smooth.
+
+    ``radiance`` [W m⁻² sr⁻¹] is None where it is not the same in all of them.
+    """
+
+    body: Body | Dome
+    radiance: Spectrum | None
 
 
 class Emitter(ABC):
@@ -36,12 +49,23 @@ class Emitter(ABC):
         check_parameters(self)
         check_vectors(self)
 
+    @property
+    def wavelengths(self) -> int | None:
+        """How many wavelengths the light's strength is given for; None for a single number.
+
+        Radiances, irradiances and fluxes then have them on the last axis.
+        """
+        return spectrum_length(self)
+
     def incident(self, position: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return a delta light's directions (K, 3) and the irradiances normal to them (K,) [W m⁻²]."""
+        """Return a delta light's M directions (M, 3) and the irradiances normal to them [W m⁻²].
+
+        These are (M,), or (M, K) for K wavelengths.
+        """
         raise RadiokitError(f"{self.name} is no delta light: it has a radiance")
 
     def radiance_from(self, direction: FloatArray, position: FloatArray) -> FloatArray:
-        """Return the radiance that arrives from ``direction`` (N, 3): (N,) [W m⁻² sr⁻¹]."""
+        """Return the radiance that arrives from ``direction`` (N, 3): (N,) or (N, K) [W m⁻² sr⁻¹]."""
         raise RadiokitError(f"{self.name} is a delta light: it has no radiance")
 
     def sample(self, u: FloatArray, position: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -60,13 +84,28 @@ class Emitter(ABC):
         """
         return None
 
-    def pieces(self, position: FloatArray, normal: FloatArray) -> Sequence[Emitter]:
+    def pieces(self, position: FloatArray, normal: FloatArray) -> Sequence[Emitter] | None:
         """Return lights that together are this one, as far as it is above the receiver's horizon.
 
         Quadrature sums over them, each in the square from which it is sampled: a light with corners gives
-        parts on which that is smooth. The default is the light itself.
+        parts on which that is smooth. The default is the light itself. None means that there are no such
+        parts: a jump runs through the light, and no rule can bound its error.
         """
         return (self,)
+
+    def distance_along(self, direction: FloatArray, position: FloatArray) -> FloatArray:
+        """Return how far (N,) [m] the light is along directions (N, 3) in which it is seen.
+
+        Infinite, the default, for environments. Along other directions the number means nothing.
+        """
+        return np.full(len(direction), np.inf)
+
+    def silhouette(self, position: FloatArray) -> Silhouette | None:
+        """Return the directions from which a light with a radiance shines; None where they are not known.
+
+        What hides part of the light is then found without samples.
+        """
+        return None
 
     @abstractmethod
     def solid_angle(self, position: FloatArray) -> Estimate:

@@ -5,23 +5,26 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.contracts.emitter import Emitter
-from radiokit.contracts.parameters import choice, parameter
+from radiokit.contracts.emitter import Emitter, Silhouette
+from radiokit.contracts.parameters import Spectrum, choice, parameter
+from radiokit.contracts.piece import Piece, TrianglePatch, tilted
+from radiokit.contracts.spectral import amount, weighted
 from radiokit.facts.directions import dot
 from radiokit.facts.errors import ParameterError
-from radiokit.facts.estimate import Estimate, rounding
+from radiokit.facts.estimate import Estimate
 from radiokit.facts.source import Source
 from radiokit.measure.outline import area_vector, triangulate
 from radiokit.measure.sphericaltriangle import UniformSphericalTriangle
 from radiokit.measure.triangle import UniformTriangle
 from radiokit.physics import polygon
+from radiokit.physics.facets import Facets
 
 __all__ = ["FlatEmitter"]
 
@@ -29,6 +32,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _EPS = float(np.finfo(float).eps)
 _SLACK = 16 * _EPS
+_FARTHEST = 1e150  # so that squares are floats
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,7 +44,9 @@ class FlatEmitter(Emitter):
 
     SOURCE: ClassVar[Source] = polygon.IRRADIANCE_SOURCE
 
-    radiance: float = parameter("[0, inf)", "W/m^2/sr", "radiance, the same everywhere on it", default=1.0)
+    radiance: Spectrum = parameter(
+        "[0, 1e100]", "W/m^2/sr", "radiance, the same everywhere on it", spectral=True, default=1.0
+    )
     sampling: str = choice("solid angle", "area", meaning="over what directions are evenly distributed")
 
     @property
@@ -48,30 +54,45 @@ class FlatEmitter(Emitter):
     def corners(self) -> FloatArray:
         """The corners (N, 3) [m]."""
 
+    @property
+    def anchor(self) -> FloatArray:
+        """The point (3,) [m] from which ``offsets`` are measured, so that small lights keep their shape."""
+        return np.zeros(3)
+
+    @property
+    def offsets(self) -> FloatArray:
+        """The corners (N, 3) [m] as seen from ``anchor``."""
+        return self.corners
+
+    @property
+    def blur(self) -> float:
+        """How far ``offsets`` may be from what the parameters say [m]: 0 where they are parameters."""
+        return 0.0
+
     @cached_property
-    def _triangles(self) -> FloatArray:
-        return self.corners[triangulate(self.corners)]
+    def _indices(self) -> npt.NDArray[np.intp]:
+        return triangulate(self.offsets)
 
     @cached_property
     def _normal(self) -> FloatArray:
-        size = float(np.abs(self.corners).max())  # so that no square overflows
-        direction = area_vector(self.corners / size)
+        sides = self.offsets - self.offsets[0]
+        direction = area_vector(sides / np.abs(sides).max())  # so that no square overflows, or underflows
         normal: FloatArray = direction / np.sqrt(dot(direction, direction))
         return normal
 
     @property
     def area(self) -> float:
         """The area [m²]."""
-        return math.hypot(*area_vector(self.corners))
+        return math.hypot(*area_vector(self.offsets))
 
     def flux(self) -> Estimate:
         """Return the flux that leaves the front, Φ = πLA [W]."""
-        value = math.pi * self.radiance * self.area
-        return Estimate(value, 8 * float(np.finfo(float).eps) * value, "rounding", method="closed form")
+        value = math.pi * amount(self.radiance) * self.area
+        return Estimate(value, 8 * _EPS * value, "rounding", method="closed form")
 
     def radiance_from(self, direction: FloatArray, position: FloatArray) -> FloatArray:
         """Return L for directions (N, 3) in which the front of the light lies, 0 for others [W m⁻² sr⁻¹]."""
-        return np.where(_view(self, _key(position)).hit(direction), self.radiance, 0.0)
+        return weighted(_view(self, _key(position)).hit(direction), self.radiance)
 
     def sample(self, u: FloatArray, position: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Turn uniform points (N, 2) into directions (N, 3) to the light, and densities (N,) [sr⁻¹].
@@ -99,20 +120,20 @@ class FlatEmitter(Emitter):
         found: list[Emitter] = []
         if _view(self, _key(position)).solid_angle == 0.0:
             return found
-        for triangle in self._triangles:
-            part = np.array(polygon.above((triangle - position).tolist(), normal.tolist()))
+        corners, origin = self._placed(position)
+        for triangle in corners[self._indices]:
+            part = np.array(polygon.above((triangle - origin).tolist(), normal.tolist()))
             for k in range(1, len(part) - 1):
                 warp = UniformSphericalTriangle(vertices=part[[0, k, k + 1]])
-                size = warp.solid_angle
-                # A direction is known to an eps, and so is a cosine, however small it is.
-                middle = warp.sample(np.array([[0.5, 0.5]]))[0]
-                precision = 8 * _EPS / max(float(middle @ normal), _EPS)
-                if len(part) == 3 and np.array_equal(part, triangle - position):
-                    size = float(polygon.solid_angle(triangle, position).value)  # with all its digits
+                size, precision = warp.solid_angle, 0.0
+                if len(part) == 3 and np.array_equal(part, triangle - origin):
+                    size = float(polygon.solid_angle(triangle, origin).value)  # with all its digits
                 elif size > 0.0:  # where the horizon cuts is rounded
-                    precision += 8 * _EPS * warp.perimeter / size
+                    precision = 8 * _EPS * warp.perimeter / size
                 if size > 0.0:
-                    found.append(_Piece(radiance=self.radiance, warp=warp, size=size, precision=precision))
+                    patch = TrianglePatch(warp, size, precision)
+                    loss = tilted(patch, normal)
+                    found.append(Piece(light=self, patch=patch, radiance=self.radiance, precision=loss))
         return found
 
     def solid_angle(self, position: FloatArray) -> Estimate:
@@ -123,8 +144,10 @@ class FlatEmitter(Emitter):
         ParameterError
             When ``position`` is on the light.
         """
-        self._check_off(position)
-        return polygon.solid_angle(self.corners, np.asarray(position, dtype=float))
+        corners, origin = self._placed(position)
+        self._check_off(corners, origin, position)
+        found = polygon.solid_angle(corners, origin)
+        return replace(found, error=found.error + self._blurred(corners - origin, found.value))
 
     def irradiance_at(self, position: FloatArray, normal: FloatArray) -> Estimate:
         """Return the irradiance on a receiver of any tilt, by Lambert's formula above its horizon [W m⁻²].
@@ -134,27 +157,66 @@ class FlatEmitter(Emitter):
         ParameterError
             When ``position`` is on the light.
         """
-        self._check_off(position)
-        found = polygon.irradiance(self.corners, np.asarray(position, dtype=float), np.asarray(normal))
-        value = found.value * self.radiance
-        error = found.error * self.radiance + (float(np.spacing(value)) if value else 0.0)
+        corners, origin = self._placed(position)
+        self._check_off(corners, origin, position)
+        found = polygon.irradiance(corners, origin, np.asarray(normal))
+        radiance = amount(self.radiance)
+        value = found.value * radiance
+        error = (found.error + self._blurred(corners - origin, found.value)) * radiance
+        error = error + np.where(value > 0, np.spacing(value), 0.0)[()]
         return Estimate(value, error, "rounding", method="closed form")
 
-    def _check_off(self, position: FloatArray) -> None:
-        offsets = self.corners - position
-        scale = float(np.abs(self.corners).max() + np.abs(position).max())
+    def _placed(self, position: Any) -> tuple[FloatArray, FloatArray]:
+        """Return the corners (N, 3) and the receiver (3,) as seen from the anchor; nothing of either is lost.
+
+        What the rounding of the receiver's place takes away is given to the corners.
+        """
+        point, anchor = np.asarray(position, dtype=float), self.anchor
+        if np.abs(point).max() > _FARTHEST:
+            raise ParameterError("position", tuple(point.tolist()), f"within {_FARTHEST:g} m of the origin")
+        origin = point - anchor
+        back = origin - point
+        lost = (point - (origin - back)) - (anchor + back)
+        return self.offsets - lost, origin
+
+    def _blurred(self, corners: FloatArray, value: float) -> float:
+        """Return how far a solid angle may be off for corners that are off by ``blur``: ≤ blur ∮ ds/r²."""
+        if not self.blur or (value == 0.0 and abs(float(corners[0] @ self._normal)) > 4 * self.blur):
+            return 0.0
+        total = 0.0
+        edges = np.roll(self.offsets, -1, axis=0) - self.offsets  # far away the corners are one
+        for a, along in zip(corners, edges, strict=True):
+            length = math.hypot(*along)
+            share = min(1.0, max(0.0, -float(a @ along) / length / length))
+            nearest = max(math.hypot(*(a + share * along)), self.blur)
+            total += min(length / nearest, math.pi) / nearest
+        return self.blur * total
+
+    def distance_along(self, direction: FloatArray, position: FloatArray) -> FloatArray:
+        """Return how far (N,) [m] the light's plane is along directions (N, 3)."""
+        seen = _view(self, _key(position)).facets
+        return np.full(len(direction), np.inf) if seen is None else seen.distance(direction)
+
+    def silhouette(self, position: FloatArray) -> Silhouette | None:
+        """Return the polygon, evenly bright; None where it is not seen."""
+        seen = _view(self, _key(position)).facets
+        return None if seen is None else Silhouette(seen, self.radiance)
+
+    def _check_off(self, corners: FloatArray, origin: FloatArray, position: FloatArray) -> None:
+        offsets = corners - origin
+        scale = float(np.abs(corners).max() + np.abs(origin).max())
         if np.min(np.abs(offsets @ self._normal)) > _SLACK * scale:
             return
-        for a, b, c in self._triangles - position:
-            sides = [_height(p, q, self._normal) for p, q in ((a, b), (b, c), (c, a))]
+        for a, b, c in self._indices:
+            edges = ((a, b), (b, c), (c, a))
+            sides = [_height(offsets[p], self.offsets[q] - self.offsets[p], self._normal) for p, q in edges]
             if all(side >= -_SLACK * scale for side in sides):
                 place = tuple(map(float, position))
                 raise ParameterError("position", place, "away from the light, on which it lies")
 
 
-def _height(p: FloatArray, q: FloatArray, normal: FloatArray) -> float:
-    """Return how far the origin is to the left of the line from p to q, in a plane with that normal."""
-    along = q - p
+def _height(p: FloatArray, along: FloatArray, normal: FloatArray) -> float:
+    """Return how far the origin is to the left of a line through p, in a plane with that normal."""
     size = math.hypot(*along)
     return float(np.cross(p, along / size) @ normal)
 
@@ -164,13 +226,17 @@ class _View:
 
     def __init__(self, light: FlatEmitter, position: FloatArray) -> None:
         self.solid_angle = float(light.solid_angle(position).value)
+        self._corners, self._origin = light._placed(position)
+        if self.solid_angle == 0.0:
+            return  # nothing is seen: no directions are asked for
         self._by_area = light.sampling == "area"
-        self._offset = light.corners[0] - position
+        corners, origin = self._corners, self._origin
+        self._offset = corners[0] - origin
         self._normal = light._normal
         self._area = light.area
-        triangles = light._triangles - position
+        triangles = corners[light._indices] - origin
         following = np.roll(triangles, -1, axis=1)
-        edges = np.roll(light._triangles, -1, axis=1) - light._triangles
+        edges = np.roll(light.offsets[light._indices], -1, axis=1) - light.offsets[light._indices]
         # Near corners and far ones alike give planes whose normals are of length 1, or 0 for a blind edge.
         size = np.sqrt(dot(triangles, triangles)) * np.sqrt(dot(edges, edges))
         self._planes = np.cross(triangles, edges) / size[..., None]
@@ -186,6 +252,11 @@ class _View:
         total = max(math.fsum(shares), 5e-324)
         self._steps = np.concatenate([[0.0], np.cumsum(shares) / total])
         self._steps[-1] = 1.0
+
+    @cached_property
+    def facets(self) -> Facets | None:
+        """The polygon in rational numbers; None where it is not seen."""
+        return Facets.seen(self._corners, self._origin)
 
     def hit(self, direction: FloatArray) -> npt.NDArray[np.bool_]:
         """Return whether directions (N, 3) meet the front, with its edges and a few units of rounding."""
@@ -217,33 +288,6 @@ class _View:
         with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
             density = height * height / (self._area * cosine**3)
         return np.where(cosine > 0, np.nan_to_num(density, posinf=np.finfo(float).max), 0.0)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Piece(Emitter):
-    """A triangle above the horizon, with a map of the square that is smooth, for quadrature."""
-
-    name: ClassVar[str] = "piece"
-
-    radiance: float
-    warp: UniformSphericalTriangle
-    size: float
-    precision: float
-
-    def radiance_from(self, direction: FloatArray, position: FloatArray) -> FloatArray:
-        """Return L: only its own directions are asked about."""
-        return np.full(len(direction), self.radiance)
-
-    def sample(self, u: FloatArray, position: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return directions and densities; the square on the second number smooths the root at its corner."""
-        direction = self.warp.sample(np.stack((u[:, 0], u[:, 1] ** 2), axis=-1))
-        with np.errstate(divide="ignore"):
-            density = 1 / (2 * u[:, 1] * self.size)
-        return direction, density
-
-    def solid_angle(self, position: FloatArray) -> Estimate:
-        """Return the solid angle [sr]."""
-        return rounding(self.size)
 
 
 def _key(position: Any) -> tuple[float, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -28,13 +28,15 @@ class PointLight(Emitter):
     position: Triple
 
     @abstractmethod
-    def intensity_along(self, direction: FloatArray) -> tuple[float, float]:
+    def intensity_along(self, direction: FloatArray) -> tuple[Any, Any]:
         """Return I [W sr⁻¹] along a unit vector (3,) away from the light, and a bound of its rounding.
+
+        Both are floats, or arrays (K,) for K wavelengths.
 
         The bound allows for a direction that is off by a few units in the last place of 1.
         """
 
-    def _arriving(self, position: FloatArray) -> tuple[FloatArray, float, float]:
+    def _arriving(self, position: FloatArray) -> tuple[FloatArray, Any, Any]:
         """Return the direction (3,) to the light, E⊥ = I/r² [W m⁻²] and the bound of I over r²."""
         x, y, z = (p - float(q) for p, q in zip(self.position, position, strict=True))
         distance = math.hypot(x, y, z)
@@ -43,13 +45,14 @@ class PointLight(Emitter):
             raise ParameterError("position", tuple(map(float, position)), allowed)
         direction = np.array([x / distance, y / distance, z / distance])
         intensity, error = self.intensity_along(-direction)
-        normal_irradiance = intensity / distance / distance
-        if not math.isfinite(normal_irradiance):
+        with np.errstate(over="ignore"):
+            normal_irradiance = intensity / distance / distance
+        if not np.all(np.isfinite(normal_irradiance)):
             raise ParameterError("position", tuple(map(float, position)), allowed)
         return direction, normal_irradiance, error / distance / distance
 
     def incident(self, position: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the direction (1, 3) of the light and E⊥ = I/r² (1,) [W m⁻²].
+        """Return the direction (1, 3) of the light and E⊥ = I/r² [W m⁻²], (1,) or (1, K).
 
         Raises
         ------
@@ -58,6 +61,11 @@ class PointLight(Emitter):
         """
         direction, normal_irradiance, _ = self._arriving(position)
         return direction[None, :], np.array([normal_irradiance])
+
+    def distance_along(self, direction: FloatArray, position: FloatArray) -> FloatArray:
+        """Return how far (N,) [m] the light is, whatever the direction (N, 3)."""
+        distance = math.hypot(*(p - float(q) for p, q in zip(self.position, position, strict=True)))
+        return np.full(len(direction), distance)
 
     def solid_angle(self, position: FloatArray) -> Estimate:
         """Return 0 sr: a point subtends no solid angle."""

@@ -9,11 +9,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.contracts.emitter import Emitter
+from radiokit.contracts.emitter import Emitter, Silhouette
+from radiokit.contracts.spectral import stacked
 from radiokit.contracts.vectors import Triple
 from radiokit.facts.directions import angle_between, frame, to_world
 from radiokit.facts.estimate import Estimate, rounding
 from radiokit.measure.cancelling import sine_minus_x_cosine
+from radiokit.measure.exact import rational
+from radiokit.physics.eclipse import Dome
 
 __all__ = ["CosineSky"]
 
@@ -33,11 +36,19 @@ class CosineSky(Emitter):
 
     @property
     @abstractmethod
-    def bernstein(self) -> tuple[float, float, float]:
-        """b₀, b₁ and b₂ [W m⁻² sr⁻¹], each at least 0."""
+    def bernstein(self) -> tuple[Any, Any, Any]:
+        """b₀, b₁ and b₂ [W m⁻² sr⁻¹], each at least 0: floats, or arrays (K,) for K wavelengths."""
 
-    def _law(self, cosine: FloatArray) -> FloatArray:
-        low, middle, high = self.bernstein
+    @property
+    def _sampled(self) -> tuple[float, float, float]:
+        """The coefficients by which directions are sampled: the means over the wavelengths."""
+        low, middle, high = (float(np.mean(b)) for b in self.bernstein)
+        return low, middle, high
+
+    @staticmethod
+    def _law(cosine: FloatArray, bernstein: tuple[Any, Any, Any]) -> FloatArray:
+        low, middle, high = bernstein
+        cosine = cosine[:, None] if np.ndim(low) else cosine
         rest = 1.0 - cosine
         value: FloatArray = (low * rest + 2.0 * middle * cosine) * rest + high * cosine * cosine
         return value
@@ -46,13 +57,25 @@ class CosineSky(Emitter):
         """Return the half-space that the sky fills."""
         return (np.array(self.normal),)
 
+    def silhouette(self, position: FloatArray) -> Silhouette:
+        """Return the half-space that the sky fills."""
+        return Silhouette(Dome((rational(self.normal),)), None)
+
     def radiance_from(self, direction: FloatArray, position: FloatArray) -> FloatArray:
         """Return L for directions (N, 3) in the sky, 0 for those below its horizon."""
+        return self._above(direction, self.bernstein)
+
+    def _above(self, direction: FloatArray, bernstein: tuple[Any, Any, Any]) -> FloatArray:
         cosine = direction @ np.array(self.normal)
-        return np.where(cosine > 0, self._law(np.clip(cosine, 0.0, 1.0)), 0.0)
+        radiance = self._law(np.clip(cosine, 0.0, 1.0), bernstein)
+        radiance[cosine <= 0] = 0.0
+        return radiance
 
     def sample(self, u: FloatArray, position: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Turn uniform points (N, 2) into directions (N, 3) of density in proportion to L [sr⁻¹]."""
+        """Turn uniform points (N, 2) into directions (N, 3) of density in proportion to L [sr⁻¹].
+
+        L counts by its mean over the wavelengths.
+        """
         cosine = self._quantile(u[:, 0])
         sine = np.sqrt((1.0 - cosine) * (1.0 + cosine))
         turn = 2.0 * np.pi * u[:, 1]
@@ -62,14 +85,14 @@ class CosineSky(Emitter):
 
     def pdf(self, direction: FloatArray, position: FloatArray) -> FloatArray:
         """Return L over its integral [sr⁻¹]; 1/2π in a sky that is all dark, and 0 below the horizon."""
-        total = math.fsum(self.bernstein) / 3
+        total = math.fsum(self._sampled) / 3
         if total > 0:
-            return self.radiance_from(direction, position) / (2 * math.pi * total)
+            return self._above(direction, self._sampled) / (2 * math.pi * total)
         return np.where(direction @ np.array(self.normal) > 0, 1 / (2 * math.pi), 0.0)
 
     def _quantile(self, u: FloatArray) -> FloatArray:
         """Return the cosine up to which the share ``u`` of ∫ L dω lies."""
-        low, middle, high = self.bernstein
+        low, middle, high = self._sampled
         largest = max(low, middle, high)
         if largest == 0:
             return u
@@ -99,7 +122,13 @@ class CosineSky(Emitter):
         ∫ cosᵏθ_z cosθ dω are π cos²(β/2), ⅔(sinγ − γ cosγ) and ½π cos⁴(β/2) for k = 0, 1, 2, with the
         coefficients of L in powers of cosθ_z.
         """
-        low, middle, high = self.bernstein
+        if self.wavelengths is not None:
+            each = zip(*self.bernstein, strict=True)
+            return stacked([self._received(tuple(map(float, b)), normal) for b in each])
+        return self._received(self.bernstein, normal)
+
+    def _received(self, bernstein: tuple[Any, ...], normal: FloatArray) -> Estimate:
+        low, middle, high = bernstein
         slope, bend = 2 * (middle - low), low - 2 * middle + high
         zenith = np.array(self.normal)
         half = math.hypot(*(zenith + normal)) / 2  # cos(β/2)

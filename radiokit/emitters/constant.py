@@ -9,13 +9,16 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.contracts.emitter import Emitter
-from radiokit.contracts.parameters import parameter
+from radiokit.contracts.emitter import Emitter, Silhouette
+from radiokit.contracts.parameters import Spectrum, parameter
+from radiokit.contracts.spectral import amount, weighted
 from radiokit.contracts.vectors import vector
 from radiokit.facts.directions import frame, to_world
 from radiokit.facts.estimate import Estimate, rounding
 from radiokit.facts.source import Source
+from radiokit.measure.exact import rational
 from radiokit.measure.warps import UniformHemisphere, UniformSphere
+from radiokit.physics.eclipse import Dome
 
 __all__ = ["Constant"]
 
@@ -30,8 +33,8 @@ class Constant(Emitter):
 
     Parameters
     ----------
-    radiance : float
-        Radiance L [W m⁻² sr⁻¹], at least 0.
+    radiance : float, or sequence of K floats
+        Radiance L [W m⁻² sr⁻¹], in [0, 1e100]; one number, or one a wavelength.
     normal : tuple of 3 floats, optional
         The zenith of a sky that shines from the half-space around it only; any length but 0, stored as a unit
         vector. Without it the environment is the whole sphere.
@@ -39,7 +42,7 @@ class Constant(Emitter):
     Raises
     ------
     ParameterError
-        When ``normal`` is zero or not three finite numbers, or ``radiance`` is negative or infinite.
+        When ``normal`` is zero or not three finite numbers, or ``radiance`` is out of its range.
 
     >>> sky = Constant(radiance=1.0, normal=(0, 0, 1))
     >>> wall = np.array([1.0, 0.0, 0.0])  # tilted by 90°: it sees half the sky
@@ -56,7 +59,9 @@ class Constant(Emitter):
         equation="the sky's share on a tilted plane, (1 + cosβ)/2",
     )
 
-    radiance: float = parameter("[0, inf)", "W/m^2/sr", "radiance, the same from everywhere", default=1.0)
+    radiance: Spectrum = parameter(
+        "[0, 1e100]", "W/m^2/sr", "radiance, the same from everywhere", spectral=True, default=1.0
+    )
     normal: tuple[float, float, float] | None = vector(
         "direction", "1", "zenith of a sky that fills a half-space", default=None
     )
@@ -65,11 +70,15 @@ class Constant(Emitter):
         """Return the half-space that the sky fills, or nothing for the whole sphere."""
         return () if self.normal is None else (np.array(self.normal),)
 
+    def silhouette(self, position: FloatArray) -> Silhouette:
+        """Return the half-space that the sky fills, or the whole sphere, evenly bright."""
+        return Silhouette(Dome(() if self.normal is None else (rational(self.normal),)), self.radiance)
+
     def radiance_from(self, direction: FloatArray, position: FloatArray) -> FloatArray:
         """Return L for directions (N, 3) in the sky, 0 for those below its horizon."""
         if self.normal is None:
-            return np.full(len(direction), self.radiance)
-        return np.where(direction @ np.array(self.normal) > 0, self.radiance, 0.0)
+            return weighted(np.ones(len(direction)), self.radiance)
+        return weighted(direction @ np.array(self.normal) > 0, self.radiance)
 
     def sample(self, u: FloatArray, position: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Turn uniform points (N, 2) into directions (N, 3), uniform over the sky, and densities [sr⁻¹]."""
@@ -97,7 +106,7 @@ class Constant(Emitter):
 
         (1 + cosβ)/2 = cos²(β/2) = |n + s|²/4, which keeps its digits for a receiver that all but faces away.
         """
-        full = math.pi * self.radiance
+        full = math.pi * amount(self.radiance)
         if self.normal is None:
             return rounding(full)
         half = math.hypot(*(np.array(self.normal) + normal)) / 2  # cos(β/2)

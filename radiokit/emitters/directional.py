@@ -9,7 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from radiokit.contracts.emitter import Emitter
-from radiokit.contracts.parameters import parameter
+from radiokit.contracts.parameters import Spectrum, parameter
+from radiokit.contracts.spectral import amount
 from radiokit.contracts.vectors import vector
 from radiokit.facts.estimate import Estimate, rounding
 from radiokit.facts.source import Source
@@ -27,13 +28,13 @@ class Directional(Emitter):
     ----------
     direction : tuple of 3 floats
         From the receiver towards the light; any length but 0, stored as a unit vector.
-    irradiance : float
-        Irradiance E⊥ [W m⁻²] on a plane that faces the light, at least 0.
+    irradiance : float, or sequence of K floats
+        Irradiance E⊥ [W m⁻²] on a plane that faces the light, in [0, 1e100]; one number, or one a wavelength.
 
     Raises
     ------
     ParameterError
-        When ``direction`` is zero or not three finite numbers, or the irradiance is negative or infinite.
+        When ``direction`` is zero or not three finite numbers, or the irradiance is out of its range.
 
     >>> light = Directional(direction=(0, 3, 4), irradiance=1000.0)
     >>> light.irradiance_at(np.zeros(3), np.array([0.0, 0.0, 1.0])).value
@@ -50,10 +51,12 @@ class Directional(Emitter):
     )
 
     direction: tuple[float, float, float] = vector("direction", "1", "from the receiver towards the light")
-    irradiance: float = parameter("[0, inf)", "W/m^2", "irradiance on a plane that faces the light")
+    irradiance: Spectrum = parameter(
+        "[0, 1e100]", "W/m^2", "irradiance on a plane that faces the light", spectral=True
+    )
 
     def incident(self, position: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the light's direction (1, 3) and E⊥ (1,) [W m⁻²], the same everywhere."""
+        """Return the light's direction (1, 3) and E⊥ [W m⁻²], (1,) or (1, K), the same everywhere."""
         return np.array([self.direction]), np.array([self.irradiance])
 
     def solid_angle(self, position: FloatArray) -> Estimate:
@@ -65,5 +68,6 @@ class Directional(Emitter):
 
         The rounding bound is that of the cosine, a few 1e-16 of E⊥.
         """
-        value = self.irradiance * max(0.0, float(np.dot(self.direction, normal)))
-        return Estimate(value, 8 * np.finfo(float).eps * self.irradiance, "rounding", method="closed form")
+        full = amount(self.irradiance)
+        value = full * max(0.0, float(np.dot(self.direction, normal)))
+        return Estimate(value, 8 * float(np.finfo(float).eps) * full, "rounding", method="closed form")

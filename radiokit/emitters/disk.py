@@ -3,39 +3,31 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.contracts.emitter import Emitter
-from radiokit.contracts.parameters import parameter
+from radiokit.contracts.chords import DiskPatch
+from radiokit.contracts.emitter import Emitter, Silhouette
+from radiokit.contracts.parameters import Spectrum, choice, parameter
+from radiokit.contracts.piece import Piece, tilted
+from radiokit.contracts.spectral import amount, flux_estimate, weighted
 from radiokit.contracts.vectors import vector
-from radiokit.facts.directions import frame
-from radiokit.facts.errors import ParameterError
+from radiokit.facts.directions import frame, to_world, unit
 from radiokit.facts.estimate import Estimate
 from radiokit.facts.source import Source
-from radiokit.measure.exact import RationalVector, cross, difference, inner, rational, root
-from radiokit.physics.disk import DISK_SOURCE, DiskView
+from radiokit.measure.exact import cross, inner
+from radiokit.physics.disk import DISK_SOURCE, DiskView, against
+from radiokit.physics.plate import Plate
 
 __all__ = ["Disk"]
 
 FloatArray = npt.NDArray[np.float64]
 
 _EPS = float(np.finfo(float).eps)
-
-
-@dataclass(frozen=True)
-class _Seen:
-    """A disk from one point in front of it, in a unit in which all lengths are at most about 1."""
-
-    towards: RationalVector  # to the centre
-    normal: RationalVector
-    radius: Fraction
-    view: DiskView
-    axes: FloatArray  # (3, 3): rows along the cone's first and second half-width, and its axis
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,11 +41,13 @@ class Disk(Emitter):
     normal : tuple of 3 floats
         The side that shines; any length but 0, stored as a unit vector.
     radius : float
-        [m], above 0.
-    radiance : float
-        Radiance L along the normal [W m⁻² sr⁻¹], at least 0.
+        [m], in (0, 1e150].
+    radiance : float, or sequence of K floats
+        Radiance L along the normal [W m⁻² sr⁻¹], in [0, 1e100]; one number, or one a wavelength.
     exponent : float
-        n, at least 0; 0 for Lambert's law.
+        n in [0, 1e6]; 0 for Lambert's law.
+    sampling : {"solid angle", "area"}
+        Over what its directions are sampled evenly, or nearly so for the solid angle.
 
     Raises
     ------
@@ -72,17 +66,18 @@ class Disk(Emitter):
 
     center: tuple[float, float, float] = vector("point", "m", "the disk's centre")
     normal: tuple[float, float, float] = vector("direction", "1", "the side that shines")
-    radius: float = parameter("(0, inf)", "m", "the disk's radius")
-    radiance: float = parameter("[0, inf)", "W/m^2/sr", "radiance along the normal")
+    radius: float = parameter("(0, 1e150]", "m", "the disk's radius")
+    radiance: Spectrum = parameter("[0, 1e100]", "W/m^2/sr", "radiance along the normal", spectral=True)
     exponent: float = parameter("[0, 1e6]", "1", "n of radiance ∝ cosⁿ of the angle of emission", default=0.0)
+    sampling: str = choice("solid angle", "area", meaning="over what directions are evenly distributed")
 
     def radiance_from(self, direction: FloatArray, position: FloatArray) -> FloatArray:
         """Return L cosⁿ for directions (N, 3) that meet the disk's bright side, 0 for the others."""
         seen = self._seen(position)
         if seen is None:
-            return np.zeros(len(direction))
+            return weighted(np.zeros(len(direction)), self.radiance)
         emission = np.maximum(-(direction @ np.array(self.normal)), 0.0)
-        return np.where(_meets(direction, seen), self.radiance * emission**self.exponent, 0.0)
+        return weighted(np.where(seen.near(direction), emission**self.exponent, 0.0), self.radiance)
 
     def sample(self, u: FloatArray, position: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Turn uniform points (N, 2) into directions (N, 3) within the cone, and their densities [sr⁻¹].
@@ -96,6 +91,8 @@ class Disk(Emitter):
         if seen is None:
             away = np.broadcast_to(-np.array(self.normal), (len(u), 3))
             return away.copy(), np.zeros(len(u))
+        if self.sampling == "area":
+            return self._over_area(u, seen)
         a, b = seen.view.semi_axes
         kappa = math.hypot(1.0, a) / math.hypot(1.0, b)
         chi = 2.0 * np.pi * u[:, 1]
@@ -114,19 +111,55 @@ class Disk(Emitter):
         seen = self._seen(position)
         if seen is None:
             return np.zeros(len(direction))
+        if self.sampling == "area":
+            emission = -(direction @ np.array(self.normal))
+            return np.where(seen.near(direction), _per_area(emission, seen.view), 0.0)
         a, b = seen.view.semi_axes
         kappa = math.hypot(1.0, a) / math.hypot(1.0, b)
         local = direction @ seen.axes.T
         x, y = local[:, 0] / a, local[:, 1] / b
         top, bottom = np.hypot(x, y), np.hypot(x, y / kappa)
         flat = np.divide(top, bottom, out=np.ones_like(top), where=bottom > 0) ** 2
-        return np.where(_meets(direction, seen), _density(a, b, kappa, flat), 0.0)
+        return np.where(seen.near(direction), _density(a, b, kappa, flat), 0.0)
+
+    def _over_area(self, u: FloatArray, seen: Plate) -> tuple[FloatArray, FloatArray]:
+        radius, turn = seen.view.radius * np.sqrt(u[:, 0]), 2.0 * np.pi * u[:, 1]
+        local = np.stack((radius * np.cos(turn), radius * np.sin(turn), np.zeros(len(u))), axis=-1)
+        points = np.array([float(x) for x in seen.towards]) + to_world(frame(self.normal), local)
+        direction = points / np.sqrt(np.sum(points * points, axis=1))[:, None]
+        return direction, _per_area(-(direction @ np.array(self.normal)), seen.view)
+
+    def pieces(self, position: FloatArray, normal: FloatArray) -> Sequence[Emitter]:
+        """Return what of the disk is above a receiver's horizon."""
+        seen = self._seen(position)
+        if seen is None:
+            return ()
+        horizon = against(normal, seen.normal, seen.towards, seen.radius)
+        if horizon.hidden <= 0:
+            return (self,) if horizon.along > 0 else ()
+        up, share = np.asarray(normal, dtype=float), horizon.towards / horizon.length
+        # The level part of the way across to the plane: the chord is square to it.
+        level = [-m - share * n for m, n in zip(seen.normal, horizon.up, strict=True)]
+        largest = max(map(abs, level))
+        side = unit([float(x / largest) for x in level])
+        chord = np.cross(up, side)
+        aside = inner(cross(horizon.up, seen.normal), seen.towards)
+        patch = DiskPatch(
+            axes=np.stack((chord, side, up)),
+            turn=horizon.turn,
+            radius=seen.view.radius,
+            depth=seen.view.depth,
+            aside=-math.copysign(horizon.aside, aside),
+            slope=horizon.slope,
+            facing=horizon.facing,
+        )
+        radiance = None if self.exponent else self.radiance
+        return (Piece(light=self, patch=patch, radiance=radiance, precision=tilted(patch, up)),)
 
     def solid_angle(self, position: FloatArray) -> Estimate:
         """Return Ω [sr] by one elliptic integral, for any place; 0 from behind and from the disk's plane."""
         seen = self._seen(position)
-        value = 0.0 if seen is None else seen.view.solid_angle()
-        return Estimate(value, 32 * _EPS * value, "rounding", method="closed form")
+        return Estimate(0.0, 0.0, "rounding", method="closed form") if seen is None else seen.solid_angle()
 
     def irradiance_at(self, position: FloatArray, normal: FloatArray) -> Estimate | None:
         """Return E [W m⁻²] on a receiver of any pose; None for most of those under a disk with an exponent.
@@ -136,97 +169,59 @@ class Disk(Emitter):
         """
         seen = self._seen(position)
         if seen is None:
-            return Estimate(0.0, 0.0, "rounding", method="closed form")
-        n, v, m, view = rational(normal), seen.towards, seen.normal, seen.view
-        length, across = inner(n, n), inner(m, m)
-        along, towards = inner(n, v), -inner(n, m)
-        facing = math.copysign(root(towards * towards / (length * across)), towards)
-        aside = cross(n, m)
-        steep = inner(aside, aside) / across  # the square of the normal's part in the disk's plane
-        hidden = seen.radius**2 * steep - along * along
-        if hidden <= 0 and along <= 0:
-            return Estimate(0.0, 0.0, "rounding", method="closed form")
-        if self.exponent and (hidden > 0 or view.offset > 0):
+            return Estimate(0.0, 0.0, "rounding", method="closed form").scaled(amount(self.radiance))
+        radiance = amount(self.radiance)
+        if not self.exponent:
+            return seen.irradiance(normal).scaled(radiance)
+        view, horizon = seen.view, against(normal, seen.normal, seen.towards, seen.radius)
+        if horizon.hidden <= 0 and horizon.along <= 0:
+            return Estimate(0.0, 0.0, "rounding", method="closed form").scaled(radiance)
+        if horizon.hidden > 0 or view.offset > 0:
             return None
-        if self.exponent:
-            power = self.exponent + 2.0
-            share = -math.expm1(-0.5 * power * math.log1p((view.radius / view.depth) ** 2))
-            value = self.radiance * facing * 2.0 * math.pi / power * share
-            return Estimate(value, 16 * _EPS * value, "rounding", method="closed form")
-        if hidden <= 0:
-            value = self.radiance * view.whole(height=root(along * along / length), facing=facing)
-            return Estimate(value, 32 * _EPS * value, "rounding", method="closed form")
-        share, error, evaluations = view.cut(
-            turn=math.atan2(root(hidden), math.copysign(root(along * along), -along)),
-            slope=root(steep / length),
-            facing=facing,
-            aside=root(inner(aside, v) ** 2 / inner(aside, aside)),
-        )
-        value, error = self.radiance * share, self.radiance * error
-        return Estimate(value, error, "truncation", evaluations, method="integral along the disk's edge")
+        power = self.exponent + 2.0
+        share = -math.expm1(-0.5 * power * math.log1p((view.radius / view.depth) ** 2))
+        value = horizon.facing * 2.0 * math.pi / power * share
+        return Estimate(value, 16 * _EPS * value, "rounding", method="closed form").scaled(radiance)
+
+    def distance_along(self, direction: FloatArray, position: FloatArray) -> FloatArray:
+        """Return how far (N,) [m] the disk's plane is along directions (N, 3)."""
+        seen = self._seen(position)
+        return np.full(len(direction), np.inf) if seen is None else seen.distance(direction)
+
+    def silhouette(self, position: FloatArray) -> Silhouette | None:
+        """Return the disk, evenly bright for Lambert's law; None where it is not seen."""
+        seen = self._seen(position)
+        return None if seen is None else Silhouette(seen, None if self.exponent else self.radiance)
 
     def flux(self) -> Estimate:
         """Return the radiant flux Φ = 2πL/(n + 2) · πR² [W].
+
+        Raises
+        ------
+        ParameterError
+            When it is beyond the range of floats.
 
         >>> lamp = Disk(center=(0, 0, 2), normal=(0, 0, -1), radius=2, radiance=1.0, exponent=2)
         >>> round(float(lamp.flux().value) / np.pi**2, 12)
         2.0
         """
-        value = 2.0 * math.pi / (self.exponent + 2.0) * math.pi * self.radius * self.radius * self.radiance
-        return Estimate(value, 8 * _EPS * value, "rounding", method="closed form")
+        share = 2.0 * math.pi / (self.exponent + 2.0)
+        with np.errstate(over="ignore"):
+            value = share * math.pi * self.radius * self.radius * amount(self.radiance)
+        return flux_estimate(value, 8, radius=self.radius)
 
-    def _seen(self, position: FloatArray) -> _Seen | None:
+    def _seen(self, position: FloatArray) -> Plate | None:
         """Return what a point sees of the disk, or None behind it and in its plane."""
-        m, v = rational(self.normal), difference(self.center, position)
-        depth, across, square = -inner(m, v), inner(m, m), inner(v, v)
-        size = Fraction(self.radius) ** 2
-        if depth == 0 and square <= size:
-            allowed = f"off the disk of radius {self.radius!r} around {self.center}"
-            raise ParameterError("position", tuple(map(float, position)), allowed)
-        if depth <= 0:
-            return None
-        larger = max(square, size)
-        unit = Fraction(2) ** ((larger.numerator.bit_length() - larger.denominator.bit_length()) // 2)
-        v, radius = (v[0] / unit, v[1] / unit, v[2] / unit), Fraction(self.radius) / unit
-        depth, square, size = depth / unit, square / unit**2, size / unit**2
-        foot = depth * depth / across
-        offset = root(square - foot)
-        view = DiskView(
-            radius=float(radius),
-            depth=root(foot),
-            offset=offset,
-            rim=float(square - foot - size) / (offset + float(radius)),
-            power=float(square - size),
-        )
-        if not min(view.depth, view.radius) > 1e-100:
-            allowed = f"within 1e100 radii of the disk around {self.center}, and as far off its plane"
-            raise ParameterError("position", tuple(map(float, position)), allowed)
-        tilt = 0.5 * math.atan2(2 * view.depth * offset, float(2 * foot + size - square))
-        return _Seen(v, m, radius, view, self._axes(v, depth / across, tilt))
+        return Plate.seen(self.center, self.normal, self.radius, position)
 
-    def _axes(self, v: RationalVector, steps: Fraction, tilt: float) -> FloatArray:
-        """Return the cone's axes, ``tilt`` from the way across towards the centre's side."""
-        across = -np.array(self.normal)
-        inside = [x + steps * Fraction(y) for x, y in zip(v, self.normal, strict=True)]
-        largest = max(map(abs, inside))
-        if largest:
-            outward = np.array([float(x / largest) for x in inside])
-            outward /= np.linalg.norm(outward)
-        else:
-            outward = frame(across)[0]
-        first = math.cos(tilt) * outward - math.sin(tilt) * across
-        return np.stack(
-            (first, np.cross(across, outward), math.cos(tilt) * across + math.sin(tilt) * outward)
-        )
+
+def _per_area(emission: FloatArray, view: DiskView) -> FloatArray:
+    """Return r²/(A cosθ), with θ at the disk, by its cosine: a² / (A cos³θ)."""
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+        density = (view.depth / view.radius) ** 2 / (np.pi * emission**3)
+    return np.where(emission > 0, np.minimum(density, np.finfo(float).max), 0.0)
 
 
 def _density(a: float, b: float, kappa: float, flat: FloatArray) -> FloatArray:
     far = math.hypot(1.0, a)
     return far / a * ((far + np.sqrt(flat)) / b) / (2.0 * np.pi * kappa)
-
-
-def _meets(direction: FloatArray, seen: _Seen) -> npt.NDArray[np.bool_]:
-    """Return which directions lie in the cone; a sample at its rim may be off by rounding."""
-    a, b = seen.view.semi_axes
-    x, y, z = (direction @ seen.axes.T).T
-    return np.asarray(np.hypot(x / a, y / b) <= z * (1 + 8 * _EPS) + 4 * _EPS / min(a, b))

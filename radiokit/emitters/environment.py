@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.contracts.emitter import Emitter
+from radiokit.contracts.emitter import Emitter, Silhouette
 from radiokit.contracts.oriented import oriented
 from radiokit.contracts.vectors import vector
 from radiokit.facts.directions import to_local, to_world
@@ -17,6 +17,7 @@ from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate, rounding
 from radiokit.facts.source import Source
 from radiokit.measure.latlong import cell_edges, cell_projections, cell_solid_angles
+from radiokit.physics.eclipse import Dome
 
 __all__ = ["Environment"]
 
@@ -34,8 +35,8 @@ class Environment(Emitter):
 
     Parameters
     ----------
-    radiance : array_like, shape (H, W)
-        Radiance [W m⁻² sr⁻¹] of the cells, finite and at least 0, for one wavelength. Row i spans the polar
+    radiance : array_like, shape (H, W) or (H, W, K)
+        Radiance [W m⁻² sr⁻¹] of the cells, in [0, 1e100], at one wavelength or at K. Row i spans the polar
         angles π i/H to π (i + 1)/H from the zenith, column j the azimuths 2π j/W to 2π (j + 1)/W.
     normal : tuple of 3 floats, optional
         The zenith, where row 0 begins; any length but 0, stored as a unit vector. z by default.
@@ -88,8 +89,19 @@ class Environment(Emitter):
         return _rebuild, (type(self), np.array(self.radiance), self.normal, self.forward)
 
     def __repr__(self) -> str:
-        rows, columns = self.radiance.shape
-        return f"Environment(radiance=<{rows} x {columns}>, normal={self.normal!r}, forward={self.forward!r})"
+        size = " x ".join(map(str, self.radiance.shape))
+        return f"Environment(radiance=<{size}>, normal={self.normal!r}, forward={self.forward!r})"
+
+    @property
+    def wavelengths(self) -> int | None:
+        """K, or None for a map of one wavelength."""
+        return int(self.radiance.shape[2]) if self.radiance.ndim == 3 else None
+
+    @cached_property
+    def _grey(self) -> FloatArray:
+        """The means (H, W) over the wavelengths, by which directions are sampled."""
+        grey: FloatArray = self.radiance if self.radiance.ndim == 2 else self.radiance.mean(axis=2)
+        return grey
 
     @cached_property
     def _axes(self) -> FloatArray:
@@ -97,13 +109,13 @@ class Environment(Emitter):
 
     @cached_property
     def _solid_angles(self) -> FloatArray:
-        return cell_solid_angles(*self.radiance.shape)
+        return cell_solid_angles(*self._grey.shape)
 
     @cached_property
     def _weights(self) -> FloatArray:
         """What each cell gets of the samples: its solid angle times its share of the largest radiance."""
-        largest = float(self.radiance.max())
-        relative = self.radiance / largest if largest > 0 else np.ones(self.radiance.shape)
+        largest = float(self._grey.max())
+        relative = self._grey / largest if largest > 0 else np.ones(self._grey.shape)
         weights: FloatArray = relative * self._solid_angles[:, None]
         return weights
 
@@ -121,12 +133,12 @@ class Environment(Emitter):
     @cached_property
     def _last_lit(self) -> npt.NDArray[np.intp]:
         """The last column (H,) of each row that is not dark."""
-        columns = np.arange(self.radiance.shape[1])
+        columns = np.arange(self._grey.shape[1])
         last: npt.NDArray[np.intp] = np.max(np.where(self._weights > 0, columns, 0), axis=1)
         return last
 
     def _cell(self, direction: FloatArray) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
-        rows, columns = self.radiance.shape
+        rows, columns = self._grey.shape
         x, y, z = to_local(self._axes, direction).T
         turn = np.arctan2(y, x) / (2 * np.pi)
         down = np.arctan2(np.hypot(x, y), z) / np.pi
@@ -138,14 +150,21 @@ class Environment(Emitter):
         """Return ``()``, the whole sphere, for a map with one radiance everywhere, and None else."""
         return () if np.all(self.radiance == self.radiance[0, 0]) else None
 
+    def silhouette(self, position: FloatArray) -> Silhouette | None:
+        """Return the whole sphere for a map with one radiance everywhere, and None else: cells have edges."""
+        return Silhouette(Dome(), float(self.radiance[0, 0])) if self.dome(position) == () else None
+
     def radiance_from(self, direction: FloatArray, position: FloatArray) -> FloatArray:
-        """Return the radiance of the cells in which directions (N, 3) lie."""
+        """Return the radiance, (N,) or (N, K), of the cells in which directions (N, 3) lie."""
         found: FloatArray = self.radiance[self._cell(direction)]
         return found
 
     def sample(self, u: FloatArray, position: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Turn uniform points (N, 2) into directions (N, 3) of density in proportion to L [sr⁻¹]."""
-        rows, columns = self.radiance.shape
+        """Turn uniform points (N, 2) into directions (N, 3) of density in proportion to L [sr⁻¹].
+
+        L counts by its mean over the wavelengths.
+        """
+        rows, columns = self._grey.shape
         mass = np.minimum(u[:, 0], _BELOW_ONE) * self._marginal[-1]
         row = np.clip(np.searchsorted(self._marginal, mass, side="right") - 1, 0, rows - 1)
         down = _share(mass, self._marginal[row], self._marginal[row + 1])
@@ -172,30 +191,38 @@ class Environment(Emitter):
 
     def solid_angle(self, position: FloatArray) -> Estimate:
         """Return the solid angle [sr] of the cells that are not dark."""
-        lit = np.count_nonzero(self.radiance, axis=1)
+        lit = np.count_nonzero(self._grey, axis=1)
         return rounding(float(np.sum(lit * self._solid_angles)), ulps=8)
 
     def irradiance_at(self, position: FloatArray, normal: FloatArray) -> Estimate:
         """Return E = Σ L ∫ max(0, cosθ) dω over the cells, those that the horizon cuts included."""
-        rows, columns = self.radiance.shape
+        rows, columns = self._grey.shape
         seen, error = cell_projections(rows, columns, to_local(self._axes, normal))
-        value = float(np.sum(self.radiance * seen))
-        bound = float(np.sum(self.radiance * error)) + 32 * _EPS * value
+        weights = np.stack((seen, error))
+        if self.radiance.ndim == 2:
+            value, bound = (float(np.sum(self.radiance * weight)) for weight in weights)
+        else:
+            value, bound = np.einsum("ijk,wij->wk", self.radiance, weights)
+        bound = bound + 32 * _EPS * value
         return Estimate(value, bound, "rounding", method="closed form")
 
 
 def _checked_map(value: Any) -> FloatArray:
-    allowed = "an array of shape (H, W) of finite numbers, at least 0"
+    allowed = "an array of shape (H, W) or (H, W, K) of numbers in [0, 1e100]"
     try:
         table = np.array(value, dtype=float)
     except (TypeError, ValueError):
         raise ParameterError("radiance", value, allowed) from None
-    if table.ndim != 2 or not table.size:
-        raise ParameterError("radiance.shape", table.shape, "(H, W), a map of at least one cell")
-    bad = ~(np.isfinite(table) & (table >= 0))
+    if table.ndim not in (2, 3) or not table.size:
+        shapes = "(H, W) or (H, W, K), a map of at least one cell"
+        raise ParameterError("radiance.shape", table.shape, shapes)
+    bad = ~((table >= 0) & (table <= 1e100))
     if bad.any():
-        row, column = (int(k) for k in np.argwhere(bad)[0])
-        raise ParameterError(f"radiance[{row}, {column}]", float(table[row, column]), "finite and at least 0")
+        first = tuple(np.argwhere(bad)[0].tolist())
+        place = ", ".join(map(str, first))
+        raise ParameterError(
+            f"radiance[{place}]", float(table[first]), "finite and at least 0, at most 1e100"
+        )
     table += 0.0
     table.flags.writeable = False
     return table

@@ -12,8 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 from radiokit.contracts.oriented import oriented
-from radiokit.contracts.parameters import parameter
+from radiokit.contracts.parameters import Spectrum, parameter
 from radiokit.contracts.pointlight import PointLight
+from radiokit.contracts.spectral import amount
 from radiokit.contracts.vectors import vector
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate, rounding
@@ -44,8 +45,8 @@ class Goniometric(PointLight):
     forward : tuple of 3 floats, optional
         Horizontal angle 0; the angle grows counterclockwise as seen against ``direction``, from above a lamp
         that points down. x by default; it is made perpendicular to ``direction``.
-    scale : float
-        Factor of all intensities, at least 0.
+    scale : float, or sequence of K floats
+        Factor of all intensities, in [0, 1e100]; one number, or one a wavelength.
     efficacy : float
         Luminous efficacy K of the radiation [lm W⁻¹], in (0, 683.002].
 
@@ -72,7 +73,7 @@ class Goniometric(PointLight):
     forward: tuple[float, float, float] = vector(
         "direction", "1", "horizontal angle 0", default=(1.0, 0.0, 0.0)
     )
-    scale: float = parameter("[0, inf)", "1", "factor of all intensities", default=1.0)
+    scale: Spectrum = parameter("[0, 1e100]", "1", "factor of all intensities", spectral=True, default=1.0)
     efficacy: float = parameter("(0, 683.002]", "lm/W", "luminous efficacy of the radiation", default=683.0)
 
     def __post_init__(self) -> None:
@@ -98,10 +99,10 @@ class Goniometric(PointLight):
         return oriented((-x + 0.0, -y + 0.0, -z + 0.0), self.forward, name="direction")
 
     @property
-    def _factor(self) -> float:
-        return self.scale / self.efficacy
+    def _factor(self) -> Any:
+        return amount(self.scale) / self.efficacy
 
-    def intensity_along(self, direction: FloatArray) -> tuple[float, float]:
+    def intensity_along(self, direction: FloatArray) -> tuple[Any, Any]:
         """Return I [W sr⁻¹] along a unit vector away from the light, and a bound of its rounding."""
         x, y, up = (float(v) for v in self._axes @ direction)
         polar = math.degrees(math.atan2(math.hypot(x, y), -up))

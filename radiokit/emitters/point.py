@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.contracts.parameters import parameter
+from radiokit.contracts.parameters import Spectrum, parameter
 from radiokit.contracts.pointlight import PointLight
+from radiokit.contracts.spectral import amount
 from radiokit.contracts.vectors import vector
 from radiokit.facts.estimate import Estimate, rounding
 from radiokit.facts.source import Source
@@ -28,13 +29,13 @@ class Point(PointLight):
     ----------
     position : tuple of 3 floats
         Where the light is [m].
-    intensity : float
-        Radiant intensity I [W sr⁻¹], at least 0.
+    intensity : float, or sequence of K floats
+        Radiant intensity I [W sr⁻¹], in [0, 1e100]; one number, or one a wavelength.
 
     Raises
     ------
     ParameterError
-        When ``position`` is not three finite numbers, or ``intensity`` is negative or infinite.
+        When ``position`` is not three finite numbers, or ``intensity`` is out of its range.
 
     >>> light = Point(position=(0, 0, 2), intensity=8.0)
     >>> light.irradiance_at(np.zeros(3), np.array([0.0, 0.0, 1.0])).value
@@ -50,12 +51,14 @@ class Point(PointLight):
     )
 
     position: tuple[float, float, float] = vector("point", "m", "where the light is")
-    intensity: float = parameter("[0, inf)", "W/sr", "radiant intensity, the same in all directions")
+    intensity: Spectrum = parameter(
+        "[0, 1e100]", "W/sr", "radiant intensity, the same in all directions", spectral=True
+    )
 
-    def intensity_along(self, direction: FloatArray) -> tuple[float, float]:
+    def intensity_along(self, direction: FloatArray) -> tuple[Any, float]:
         """Return I [W sr⁻¹], which is exact."""
-        return self.intensity, 0.0
+        return amount(self.intensity), 0.0
 
     def flux(self) -> Estimate:
         """Return Φ = 4πI [W]."""
-        return rounding(4 * math.pi * self.intensity)
+        return rounding(4 * math.pi * amount(self.intensity))

@@ -23,8 +23,8 @@ class Polygon(FlatEmitter):
     ----------
     vertices : array_like, shape (N, 3)
         Its corners [m], at least 3, counter-clockwise as seen from the side that shines.
-    radiance : float
-        L [W m⁻² sr⁻¹], at least 0.
+    radiance : float, or sequence of K floats
+        L [W m⁻² sr⁻¹], in [0, 1e100]; one number, or one a wavelength.
     sampling : {"solid angle", "area"}
         Over what its directions are sampled evenly.
 
@@ -32,7 +32,7 @@ class Polygon(FlatEmitter):
     ------
     ParameterError
         Naming the vertex that is not finite, equals its neighbour, is off the plane by more than 1e-9 of the
-        size, or starts an edge that meets another; or when ``radiance`` is negative or infinite.
+        size, or starts an edge that meets another; or when ``radiance`` is out of its range.
 
     >>> ell = [(0, 0, 1), (0, 2, 1), (1, 2, 1), (1, 1, 1), (2, 1, 1), (2, 0, 1)]  # it shines down
     >>> light = Polygon(vertices=ell, radiance=2.0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
@@ -32,12 +33,12 @@ class Rectangle(FlatEmitter):
     normal : tuple of 3 floats
         To where it shines; any length but 0, stored as a unit vector.
     width, height : float
-        Its sides [m], above 0.
+        Its sides [m], in [1e-100, 1e100].
     up : tuple of 3 floats, optional
         Along its height, as far as that is possible; any length but 0. Without it, the first axis of
         ``frame(normal)`` is along its width.
-    radiance : float
-        L [W m⁻² sr⁻¹], at least 0.
+    radiance : float, or sequence of K floats
+        L [W m⁻² sr⁻¹], in [0, 1e100]; one number, or one a wavelength.
     sampling : {"solid angle", "area"}
         Over what its directions are sampled evenly.
 
@@ -56,38 +57,48 @@ class Rectangle(FlatEmitter):
 
     center: tuple[float, float, float] = vector("point", "m", "its middle")
     normal: tuple[float, float, float] = vector("direction", "1", "to where it shines")
-    width: float = parameter("(0, 1e100]", "m", "side across up")
-    height: float = parameter("(0, 1e100]", "m", "side along up")
+    width: float = parameter("[1e-100, 1e100]", "m", "side across up")
+    height: float = parameter("[1e-100, 1e100]", "m", "side along up")
     up: tuple[float, float, float] | None = vector("direction", "1", "along its height", default=None)
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.up is not None and not np.sum(np.cross(self.normal, self.up) ** 2) > 1e-24:
             raise ParameterError("up", self.up, f"no vector along the normal {self.normal}")
+        sides = f"larger than the spacing of floats at {self.center}, and within 1e13 of the other side"
+        if min(self.width, self.height) <= np.spacing(np.abs(self.center).max()):
+            raise ParameterError("width, height", (self.width, self.height), sides)
         try:
-            check_outline("corners", self.corners)
+            check_outline("corners", self.offsets)
         except ParameterError:
-            sides = f"larger than the spacing of floats at {self.center}, and within 1e9 of the other side"
             raise ParameterError("width, height", (self.width, self.height), sides) from None
 
     @cached_property
     def corners(self) -> FloatArray:
         """The corners (4, 3) [m], counter-clockwise from the lower left as seen from the front."""
+        corners: FloatArray = self.anchor + self.offsets
+        return corners
+
+    @property
+    def anchor(self) -> FloatArray:
+        """The middle (3,) [m]."""
+        return np.array(self.center)
+
+    @cached_property
+    def offsets(self) -> FloatArray:
+        """The corners (4, 3) [m] as seen from the middle."""
         axes = frame(self.normal)
         right, up = axes[0], axes[1]
         if self.up is not None:
             right = unit(np.cross(self.up, self.normal))
             up = np.cross(self.normal, right)
         across, along = 0.5 * self.width * right, 0.5 * self.height * up
-        middle = np.array(self.center)
-        return np.array(
-            [
-                middle - across - along,
-                middle + across - along,
-                middle + across + along,
-                middle - across + along,
-            ]
-        )
+        return np.array([-across - along, across - along, across + along, along - across])
+
+    @property
+    def blur(self) -> float:
+        """How far rounding may put the corners [m]."""
+        return 8 * float(np.finfo(float).eps) * math.hypot(self.width, self.height)
 
     @property
     def area(self) -> float:

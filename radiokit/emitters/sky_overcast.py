@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
-from radiokit.contracts.parameters import parameter
+from radiokit.contracts.parameters import Spectrum, parameter
 from radiokit.contracts.sky import CosineSky
+from radiokit.contracts.spectral import amount
 from radiokit.contracts.vectors import vector
 from radiokit.facts.source import Source
 
@@ -19,15 +20,15 @@ class SkyOvercast(CosineSky):
 
     Parameters
     ----------
-    radiance : float
-        Radiance L_z [W m⁻² sr⁻¹] at the zenith, at least 0.
+    radiance : float, or sequence of K floats
+        Radiance L_z [W m⁻² sr⁻¹] at the zenith, in [0, 1e100]; one number, or one a wavelength.
     normal : tuple of 3 floats, optional
         The zenith; any length but 0, stored as a unit vector. z by default.
 
     Raises
     ------
     ParameterError
-        When ``normal`` is zero or not three finite numbers, or ``radiance`` is negative or infinite.
+        When ``normal`` is zero or not three finite numbers, or ``radiance`` is out of its range.
 
     >>> import numpy as np
     >>> flat = SkyOvercast(radiance=9.0).irradiance_at(np.zeros(3), np.array([0.0, 0.0, 1.0]))
@@ -43,10 +44,13 @@ class SkyOvercast(CosineSky):
         equation="L = L_z (1 + 2 cosθ)/3, a standard of the CIE since 1955",
     )
 
-    radiance: float = parameter("[0, inf)", "W/m^2/sr", "radiance at the zenith", default=1.0)
+    radiance: Spectrum = parameter(
+        "[0, 1e100]", "W/m^2/sr", "radiance at the zenith", spectral=True, default=1.0
+    )
     normal: tuple[float, float, float] = vector("direction", "1", "the zenith", default=(0.0, 0.0, 1.0))
 
     @property
-    def bernstein(self) -> tuple[float, float, float]:
+    def bernstein(self) -> tuple[Any, Any, Any]:
         """L_z/3, 2L_z/3 and L_z."""
-        return self.radiance / 3, 2 * (self.radiance / 3), self.radiance
+        zenith = amount(self.radiance)
+        return zenith / 3, 2 * (zenith / 3), zenith

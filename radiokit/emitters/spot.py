@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.contracts.parameters import parameter
+from radiokit.contracts.parameters import Spectrum, parameter
 from radiokit.contracts.pointlight import PointLight
+from radiokit.contracts.spectral import amount
 from radiokit.contracts.vectors import vector
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate, rounding
@@ -36,8 +37,8 @@ class Spot(PointLight):
         Where the light is [m].
     direction : tuple of 3 floats
         Along the axis, away from the light; any length but 0, stored as a unit vector.
-    intensity : float
-        Radiant intensity I [W sr⁻¹] on the axis, at least 0.
+    intensity : float, or sequence of K floats
+        Radiant intensity I [W sr⁻¹] on the axis, in [0, 1e100]; one number, or one a wavelength.
     outer : float
         Half-angle [rad] of the cone, in (0, π].
     inner : float, optional
@@ -65,7 +66,7 @@ class Spot(PointLight):
 
     position: tuple[float, float, float] = vector("point", "m", "where the light is")
     direction: tuple[float, float, float] = vector("direction", "1", "the axis, away from the light")
-    intensity: float = parameter("[0, inf)", "W/sr", "radiant intensity on the axis")
+    intensity: Spectrum = parameter("[0, 1e100]", "W/sr", "radiant intensity on the axis", spectral=True)
     outer: float = parameter("(0, 3.141592653589793]", "rad", "half-angle beyond which it is dark")
     inner: float = parameter("[0, 3.141592653589793]", "rad", "half-angle of constant intensity", default=0.0)
 
@@ -74,7 +75,7 @@ class Spot(PointLight):
         if self.inner > self.outer:
             raise ParameterError("inner", self.inner, f"at most outer, {self.outer!r}")
 
-    def intensity_along(self, direction: FloatArray) -> tuple[float, float]:
+    def intensity_along(self, direction: FloatArray) -> tuple[Any, Any]:
         """Return I [W sr⁻¹] along a unit vector away from the light, and a bound of its rounding.
 
         By haversines, h(θ) = sin²(θ/2) = (1 − cosθ)/2 = |w − axis|²/4, since differences of cosines lose all
@@ -94,9 +95,10 @@ class Spot(PointLight):
             shape, error = t * t * (3 - 2 * t), min(1.0, 6 * off * (t * (1 - t) + off) + 4 * _EPS)
             if room <= -slack or room >= band * (1 + 4 * _EPS) + slack:
                 error = 0.0
-        return self.intensity * shape, self.intensity * error
+        intensity = amount(self.intensity)
+        return intensity * shape, intensity * error
 
     def flux(self) -> Estimate:
         """Return Φ = 2πI (1 − (cos inner + cos outer)/2) [W], by the squares of half-angles' sines."""
         share = math.sin(self.inner / 2) ** 2 + math.sin(self.outer / 2) ** 2
-        return rounding(2 * math.pi * self.intensity * share, ulps=8)
+        return rounding(2 * math.pi * amount(self.intensity) * share, ulps=8)

@@ -24,15 +24,15 @@ class Triangle(FlatEmitter):
     ----------
     vertices : array_like, shape (3, 3)
         Its corners [m], counter-clockwise as seen from the side that shines.
-    radiance : float
-        L [W m⁻² sr⁻¹], at least 0.
+    radiance : float, or sequence of K floats
+        L [W m⁻² sr⁻¹], in [0, 1e100]; one number, or one a wavelength.
     sampling : {"solid angle", "area"}
         Over what its directions are sampled evenly.
 
     Raises
     ------
     ParameterError
-        When the vertices are not three finite points around an area, or ``radiance`` is negative or infinite.
+        When the vertices are not three finite points around an area, or ``radiance`` is out of its range.
 
     >>> octant = Triangle(vertices=[(1, 0, 0), (0, 0, 1), (0, 1, 0)])  # it shines on the origin
     >>> round(float(octant.solid_angle(np.zeros(3)).value) / np.pi, 14)

@@ -11,6 +11,7 @@ import typer
 from radiokit.faces.bench.command import bench
 from radiokit.faces.console import fail, progress_bar, show_json, show_report, show_table, write
 from radiokit.faces.models import models
+from radiokit.faces.render.command import render
 from radiokit.faces.stability.command import stability
 from radiokit.facts.errors import RadiokitError
 
@@ -261,6 +262,7 @@ def _show_case(each: Any) -> None:
 
 app.command()(bench)
 app.command()(models)
+app.command(context_settings=_OPEN)(render)
 app.command()(stability)
 
 

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.converge import GK21, Integrand, RuleSum, adaptive, apply_rule, converge
-from radiokit.measure.slope import gauss_legendre
+from radiokit.measure.gauss import gauss_legendre
 
 __all__ = ["bent", "box"]
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["CURVES", "Curve", "polar_angle"]
+__all__ = ["CURVES", "Curve", "critical", "polar_angle"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -34,12 +34,15 @@ class Curve:
         Takes T, returns the values of y at which the curve starts, stops, or meets another.
     crossed : bool
         Whether it ends on the circle, which then bends from there on, however little.
+    rooted : bool
+        Whether an integrand goes as the root of the distance from it, and not just bends.
     """
 
     name: str
     slope: Callable[[float, FloatArray], FloatArray]
     ends: Callable[[float], tuple[float, ...]]
     crossed: bool = False
+    rooted: bool = False
 
 
 def polar_angle(y: FloatArray) -> FloatArray:
@@ -89,3 +92,50 @@ CURVES = (
     Curve("r·i = 0", _mirror, _mirror_ends),
 )
 """The circle of equal polar angles; where the two V-groove's walls begin to hide; a lobe's edge."""
+
+
+def critical(cosine: float) -> tuple[Curve, Curve]:
+    """Return where facets begin, and cease, to be hit at an angle of incidence: o·h = ``cosine``.
+
+    Where that is the critical angle of total reflection, Fresnel's reflectance goes as a root beside it. In ρ
+    the equation is quadratic; where o·h comes near its largest value c cosh y, at ρ = sinh y, the two meet.
+
+    >>> wo_tangent, y = 0.75, np.array([0.3])
+    >>> rho = critical(0.7)[1].slope(wo_tangent, y)
+    >>> h_z = 1 / np.sqrt(1 + rho**2)
+    >>> round(float((0.8 * h_z * (1 + rho * np.sinh(y)))[0]), 12)
+    0.7
+    """
+
+    def parts(tan_o: float, y: FloatArray) -> tuple[float, FloatArray, FloatArray]:
+        c, sine = 1 / np.sqrt(1 + tan_o * tan_o), np.sinh(y)
+        spread = (c * np.cosh(y) - cosine) * (c * np.cosh(y) + cosine)
+        return float((c - cosine) * (c + cosine)), c * sine, spread
+
+    def begin(tan_o: float, y: FloatArray) -> FloatArray:
+        inner, lean, spread = parts(tan_o, y)
+        if inner >= 0:  # facets along the normal are hit more steeply still
+            return np.zeros_like(y)
+        seen = (lean > 0) & (spread >= 0)
+        steep = lean / np.sqrt(1 + tan_o * tan_o) + cosine * np.sqrt(np.maximum(spread, 0.0))
+        return np.where(seen, -inner / np.where(seen, steep, 1.0), np.inf)
+
+    def cease(tan_o: float, y: FloatArray) -> FloatArray:
+        inner, lean, spread = parts(tan_o, y)
+        steep = np.abs(lean) / np.sqrt(1 + tan_o * tan_o) + cosine * np.sqrt(np.maximum(spread, 0.0))
+        rest = (cosine - lean) * (cosine + lean)
+        ahead = (lean >= 0) & (spread >= 0) & (rest > 0)
+        behind = (lean < 0) & (inner > 0)
+        found = np.where(ahead, steep / np.where(ahead, rest, 1.0), np.inf)
+        return np.where(behind, inner / np.where(steep > 0, steep, 1.0), found)
+
+    def ends(tan_o: float) -> tuple[float, ...]:
+        ratio = cosine * float(np.sqrt(1 + tan_o * tan_o))  # cosθc/cosθo
+        met = (float(np.arccosh(ratio)),) if ratio > 1 else ()
+        level = 4 * ratio * ratio - 1  # e^2y where the curve goes below the horizon
+        return (*met, 0.5 * float(np.log(level))) if level > 0 else met
+
+    return (
+        Curve("o·h rises to the critical cosine", begin, ends, rooted=True),
+        Curve("o·h falls to the critical cosine", cease, ends, rooted=True),
+    )

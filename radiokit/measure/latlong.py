@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +14,9 @@ __all__ = ["cell_edges", "cell_projections", "cell_solid_angles"]
 FloatArray = npt.NDArray[np.float64]
 
 _EPS = float(np.finfo(float).eps)
+_SLIVER = 256 * _EPS**2  # of a cell that rounding may have taken for one below the horizon
+_X, _W = (0.5 * (x + shift) for x, shift in zip(np.polynomial.legendre.leggauss(16), (1.0, 0.0), strict=True))
+_PANEL = 1.5
 
 
 def cell_edges(rows: int, columns: int) -> tuple[FloatArray, FloatArray]:
@@ -37,10 +39,8 @@ def cell_projections(rows: int, columns: int, normal: FloatArray) -> tuple[Float
     r"""Return ∫ max(0, w·n) dω over each cell (rows, columns) [sr], and a bound of its rounding.
 
     With β the angle of the plane's normal n from the pole and φ the azimuth from it, the meridian at φ is
-    seen from the pole down to the polar angle Θ_h = atan2(cosβ, −sinβ cosφ). What is seen of a sector down
-    to Θ is an integral over φ: of ½[sinβ cosφ (Θ − sinΘ cosΘ) + cosβ sin²Θ] where Θ ≤ Θ_h, and of the
-    same at Θ_h beyond, whose primitive is ½[sinβ sinφ Θ_h + atan2(cosβ sinφ, cosφ)]. Differences of these
-    give the cells that the horizon cuts; the others are products.
+    seen from the pole down to the polar angle Θ_h = atan2(cosβ, −sinβ cosφ). The cells wholly above the
+    horizon are products; those that it cuts are integrals over φ of positive terms.
 
     Parameters
     ----------
@@ -72,13 +72,11 @@ def cell_projections(rows: int, columns: int, normal: FloatArray) -> tuple[Float
     whole = 0.5 * (radial[:, None] * across + along[:, None])
     size = 0.5 * (np.abs(radial[:, None] * across) + np.abs(along[:, None]))
 
-    corners = _seen_down_to(theta[:, None], azimuth, tilt_sine, tilt_cosine)
-    pieces = np.maximum(np.diff(np.diff(corners, axis=0), axis=1), 0.0)
-    value = np.where(above, np.maximum(whole, 0.0), np.where(cut, pieces, 0.0))
+    value = np.where(above, np.maximum(whole, 0.0), 0.0)
     # The azimuth is off by some eps of 2π, which moves what is seen of a cell by its height times that.
-    error = np.where(
-        above, _EPS * (8 * size + 16 * tilt_sine * radial[:, None]), np.where(cut, 64 * _EPS, 0.0)
-    )
+    error = np.where(above, _EPS * (8 * size + 16 * tilt_sine * radial[:, None]), _SLIVER)
+    row, column = np.nonzero(cut)
+    value[cut], error[cut] = _cut(theta[row], step_theta, azimuth[column], step_phi, tilt_sine, tilt_cosine)
     if z < 0:  # the grid upside down: azimuths stay, as does the share of x and y
         return value[::-1], error[::-1]
     return value, error
@@ -94,27 +92,79 @@ def _contains(azimuth: FloatArray, angle: float) -> npt.NDArray[np.bool_]:
     return np.ceil(turns[:-1]) <= np.floor(turns[1:])
 
 
-def _seen_down_to(theta: FloatArray, azimuth: FloatArray, tilt_sine: float, tilt_cosine: float) -> Any:
-    """Return what the plane sees between azimuth 0 and ``azimuth``, from the pole down to ``theta``."""
-    turns = np.rint(azimuth / (2 * math.pi))
-    rest = azimuth - 2 * math.pi * turns
-    part = _half_turn(theta, np.abs(rest), tilt_sine, tilt_cosine)
-    return np.sign(rest) * part + 2 * turns * _half_turn(theta, np.float64(math.pi), tilt_sine, tilt_cosine)
+def _cut(
+    top: FloatArray,
+    step_theta: float,
+    start: FloatArray,
+    step_phi: float,
+    tilt_sine: float,
+    tilt_cosine: float,
+) -> tuple[FloatArray, FloatArray]:
+    """Return what is seen of the cells (K,) that the horizon cuts, and the bounds.
+
+    A meridian is seen over x = min(Θ_h, Θ₂) − Θ₁, and w·n = R sin(Θ_h − θ) along it, with
+    R² = cos²β + sin²β cos²φ. With h = Θ_h − Θ₁ it gives
+    R [sin x sin(h − x/2) sin(Θ₁ + x/2) − ½ (x − sin x) cosΘ_h], of which the last term is at most a third.
+    The azimuths between which that is smooth are Gauss-Legendre panels in t, φ = φ₀ + c sinh t, with
+    c = cotβ the distance of its singularities from φ₀ = ±π/2.
+    """
+    cell, low, high = _smooth_spans(top, step_theta, start, step_phi, tilt_sine, tilt_cosine)
+    middle = 0.5 * (low + high)
+    pole = math.pi * (np.floor(middle / math.pi) + 0.5)
+    scale = min(max(tilt_cosine / max(tilt_sine, 1e-300), 1e-17), 10.0)
+    near, far = np.sort(np.abs(np.stack((low - pole, high - pole))), axis=0)
+    first, last = np.arcsinh(near / scale), np.arcsinh(far / scale)
+    panels = np.maximum(1, np.ceil((last - first) / _PANEL)).astype(np.intp)
+    span = np.repeat(np.arange(len(cell)), panels)
+    index = np.arange(len(span)) - np.repeat(np.cumsum(panels) - panels, panels)
+    step = (last - first) / panels
+    # t is rounded, by much where c is tiny: distances from φ₀ bound the panels, the outermost ones exactly.
+    inner, outer = (scale * np.sinh(first[span] + k * step[span]) for k in (index, index + 1))
+    inner, outer = (
+        np.where(index == 0, near[span], inner),
+        np.where(index + 1 == panels[span], far[span], outer),
+    )
+    slant = np.hypot(scale, inner)
+    gap, rest = outer - inner, (outer + inner) / (np.hypot(scale, outer) + slant)
+    width = np.log1p(gap * (1 + rest) / (inner + slant))
+    t = width[:, None] * _X
+    distance = inner[:, None] * np.cosh(t) + slant[:, None] * np.sinh(t)
+    phi = pole[span, None] + np.sign(middle - pole)[span, None] * distance
+    weight = width[:, None] * _W * (inner[:, None] * np.sinh(t) + slant[:, None] * np.cosh(t))
+    above = top[cell[span], None]
+    cosine = np.cos(phi)
+    edge = np.arctan2(tilt_cosine, -tilt_sine * cosine)
+    h = np.maximum(edge - above, 0.0)
+    x = np.minimum(h, step_theta)
+    slope = np.hypot(tilt_cosine, tilt_sine * cosine)
+    seen = np.sin(x) * np.sin(h - x / 2) * np.sin(above + x / 2) - 0.5 * x_minus_sine(x) * np.cos(edge)
+    parts = np.stack((slope * seen, 2 * np.sin(x / 2) * np.sin(above + x / 2), np.sign(x)))
+    sums = np.sum(parts * weight, axis=-1)
+    value, area, turn = np.stack([np.bincount(cell[span], part, len(top)) for part in sums])
+    height, length = np.zeros(len(top)), np.zeros(len(top))
+    np.maximum.at(height, cell[span], np.max(slope * np.sin(np.minimum(h, math.pi / 2)), axis=-1))
+    np.maximum.at(length, cell[span], np.max(x, axis=-1))
+    # The cell's edges and the horizon are off by some eps: these move by that times the heights along them.
+    return value, 8 * _EPS * (value + area + height * (2 * length + turn)) + _SLIVER
 
 
-def _half_turn(theta: FloatArray, azimuth: Any, tilt_sine: float, tilt_cosine: float) -> Any:
-    """The same for azimuths in [0, π], along which Θ_h falls and passes ``theta`` once."""
-    up, along = tilt_cosine * np.cos(theta), tilt_sine * np.sin(theta)
-    passing = np.arctan2(np.sqrt(np.maximum((along - up) * (along + up), 0.0)), -up)
-
-    def on_parallel(phi: Any) -> Any:
-        radial = 0.5 * x_minus_sine(2 * theta)
-        return 0.5 * (tilt_sine * np.sin(phi) * radial + tilt_cosine * np.sin(theta) ** 2 * phi)
-
-    def on_horizon(phi: Any) -> Any:
-        edge = _visible_down_to(phi, tilt_sine, tilt_cosine)
-        turned = np.arctan2(tilt_cosine * np.sin(phi), np.cos(phi))
-        return 0.5 * (tilt_sine * np.sin(phi) * edge + turned)
-
-    beyond = np.maximum(azimuth, passing)
-    return on_parallel(np.minimum(azimuth, passing)) + (on_horizon(beyond) - on_horizon(passing))
+def _smooth_spans(
+    top: FloatArray,
+    step_theta: float,
+    start: FloatArray,
+    step_phi: float,
+    tilt_sine: float,
+    tilt_cosine: float,
+) -> tuple[npt.NDArray[np.intp], FloatArray, FloatArray]:
+    """Return the spans of azimuth, with their cells, over which the seen part of a meridian is smooth."""
+    start = start - 2 * math.pi * np.rint(start / (2 * math.pi))
+    tilt = math.atan2(tilt_sine, tilt_cosine)
+    breaks = [np.full_like(top, angle) for angle in (0.0, math.pi / 2, math.pi)]
+    for theta in (top, top + step_theta):  # where the horizon crosses the parallel: cosφ = −cotβ cotΘ
+        square = np.maximum(-np.cos(tilt + theta) * np.cos(tilt - theta), 0.0)
+        breaks.append(np.arctan2(np.sqrt(square), -tilt_cosine * np.cos(theta)))
+    places = [sign * b + turn for b in breaks for sign in (-1, 1) for turn in (0.0, 2 * math.pi)]
+    ends = np.stack((start, *places, start + step_phi), axis=-1)
+    ends = np.sort(np.clip(ends, start[:, None], start[:, None] + step_phi), axis=-1)
+    cell, k = np.nonzero(np.diff(ends, axis=-1) > 0)
+    return cell, ends[cell, k], ends[cell, k + 1]

@@ -100,8 +100,10 @@ def triangulate(vertices: FloatArray) -> npt.NDArray[np.intp]:
     >>> triangulate(np.array([[0.0, 0, 0], [2, 0, 0], [2, 2, 0], [1, 0.5, 0]])).tolist()
     [[3, 0, 1], [1, 2, 3]]
     """
-    normal = area_vector(vertices / np.abs(vertices).max())
-    x, y = _flat(vertices, normal / _lengths(normal)).T
+    sides = vertices - vertices[0]
+    sides = sides / np.abs(sides).max()
+    normal = area_vector(sides)
+    x, y = _flat(sides, normal / _lengths(normal)).T
     rest, found = list(range(len(vertices))), []
     while len(rest) > 3:
         corners = list(zip(rest[-1:] + rest[:-1], rest, rest[1:] + rest[:1], strict=True))

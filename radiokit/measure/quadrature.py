@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -25,13 +25,12 @@ from radiokit.measure.converge import (
     converge,
 )
 from radiokit.measure.curves import CURVES, Curve
-from radiokit.measure.lattice import kronecker
-from radiokit.measure.polar import POLAR_SIZES, polar_rule
-from radiokit.measure.ridge import Ridge, find_ridge
+from radiokit.measure.polar import POLAR_SIZES, LitRules, polar_rule
+from radiokit.measure.scan import DOUBT, SCAN, look_over, missed
 from radiokit.measure.slope import Lobe, find_lobe, mirrored, slope_map, slope_rule, turned
 from radiokit.measure.split import kinked, split_rule
 
-__all__ = ["box", "hemisphere", "missed"]
+__all__ = ["box", "hemisphere"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -83,9 +82,6 @@ WIDTHS = (1.35, 0.8, 1.2, 1.0, 0.9, 1.1, 0.85, 1.0, 0.9, 1.1)
 SMOOTH_WIDTHS = (1.1, 0.9, 1.0, 1.05, 0.95, 1.1, 0.9, 1.0, 0.95, 1.05)
 """The same where rules are known to converge: less off, since they are best near the width itself."""
 
-SCAN = 4096
-"""Points of the scan that every unknown integrand gets."""
-
 STEEPNESS = 0.01 * float(np.finfo(float).eps)
 """Rounding, relative to the sum of absolute terms, times the lobe's width and cosθo; at most 0.007 eps."""
 
@@ -104,11 +100,11 @@ BROAD, BRIEF = 0.3, 20_000
 CERTAIN = 1e-11
 """Relative agreement of polar rules that is believed: what they are cut for ends in digits, at once."""
 
+HOPELESS = 1e-5
+"""Relative difference of two rules of middle size that tells that larger ones will not be certain."""
+
 LOOK = 512
 """Points at which the shape of a smooth lobe is looked at, where it may be long and narrow."""
-
-DOUBT = 2.0
-"""Standard deviations between a rule and the scan that raise doubt; evenly spread points err by far less."""
 
 
 def hemisphere(
@@ -120,6 +116,7 @@ def hemisphere(
     atol: float = 0.0,
     symmetric: bool = False,
     smooth: bool = False,
+    edges: tuple[Curve, ...] = (),
     max_evaluations: int = 4_000_000,
 ) -> Estimate:
     """Integrate over the upper hemisphere: ∫ g(ω) dω, with nodes around the mirror direction of ``wo``.
@@ -128,7 +125,9 @@ def hemisphere(
     adaptive cubature takes over in the same coordinates, twice and with different panels: the two runs
     must confirm each other. An unknown integrand is also scanned for mass between the nodes.
 
-    The bound holds for integrands that are smooth up to the horizon, or have a kink. Where jumps run
+    The bound holds for integrands that are smooth up to the horizon, or have a kink; one that is a mere
+    1e-4 rad from where a rough diffuse surface bends may be missed, which costs the square of that. Where
+    jumps run
     through the hemisphere no finite number of evaluations can bound anything: there the error is an
     estimate, which about one integrand in a hundred exceeds (``tests/test_quadrature.py``).
 
@@ -147,6 +146,8 @@ def hemisphere(
     smooth : bool
         Whether the integrand is known to have no kink or jump, so that rules that agree a little are
         believed, and no scan is made.
+    edges : tuple of Curve
+        Where the integrand is known to bend, or to go as a root; bends elsewhere are looked for.
     max_evaluations : int
         A budget. The estimate says ``converged=False`` when it did not suffice.
 
@@ -185,17 +186,18 @@ def hemisphere(
     if max_evaluations - spent > 2 * SCAN:
         if not smooth:
             curves, looked = kinked(integrand, wo, core)
+            curves += edges
             if not curves and core >= BROAD:
                 curves, more = kinked(lambda w: integrand(turned(w)), wo, core, CURVES[-1:])
                 looked += more
                 if curves:  # a lobe around wo that is too wide to be seen as one
                     straight = integrand
                     integrand = lambda w: straight(turned(w))  # noqa: E731
-            scan = _scan(integrand, wo, core)
+            scan = look_over(integrand, wo, core)
             spent += SCAN + looked
             ridge = None if symmetric else scan.ridge
         elif not symmetric:
-            ridge = _scan(integrand, wo, core, LOOK).ridge
+            ridge = look_over(integrand, wo, core, LOOK).ridge
             spent += LOOK
     steep = wo[2] > STEEP and ridge is not None and ridge.ratio < THIN
     cut = bool(curves) or steep
@@ -210,10 +212,8 @@ def hemisphere(
             return split_rule(wo, width * factor, n, ridge=ridge, symmetric=symmetric, curves=curves)
         return slope_rule(wo, width * factor, n, symmetric=symmetric)
 
-    most = min(max_evaluations, max(RULES, max_evaluations // 4))  # the rest is for refinement
-
-    def rules(most: int = most) -> Iterator[RuleSum]:
-        used = spent
+    def rules(most: int) -> Iterator[RuleSum]:
+        most, used = min(most, max_evaluations - spent), 0
         for k, (n, factor) in enumerate(zip(sizes, widths, strict=False)):
             least = (1.5 if cut else 1.0) * sides * n[0] * n[1]
             if k > 2 and used + least > most:
@@ -228,19 +228,40 @@ def hemisphere(
     rounding = ROUNDING + STEEPNESS / (core * float(wo[2]))
     memory = FORGETFUL if plain else MEMORY
     compare = partial(converge, smooth=smooth, rounding=rounding, memory=memory)
-    method = "slope-space quadrature"
-    if smooth or core < BROAD or max_evaluations < 4 * BRIEF:
-        found = compare(rules(), rtol, atol)
-    else:
-        found = compare(rules(BRIEF), rtol, atol)
-        if not found.converged:
-            sums = (apply_rule(integrand, *polar_rule(wo, n, symmetric=symmetric)) for n in POLAR_SIZES)
-            polar = compare(sums, min(rtol, CERTAIN), 0.0)
-            spent += found.evaluations
-            found, method = polar, "polar quadrature"
-        if not found.converged:
-            spent += found.evaluations
-            found, method = compare(rules(), rtol, atol), "slope-space quadrature"
+
+    found: Estimate
+
+    def slopes(most: int = max(RULES, max_evaluations // 4)) -> Estimate:  # the rest is for refinement
+        return compare(rules(most), rtol, atol)
+
+    def around(sums: Iterator[RuleSum]) -> Estimate:
+        # Where they are cut in the right places they end in digits, at once; nothing less is believed.
+        certain = min(atol, CERTAIN * float(np.min(np.abs(found.value))))
+        return compare(hopeful(sums), min(rtol, CERTAIN), certain)
+
+    def polar() -> Iterator[RuleSum]:
+        return (apply_rule(integrand, *polar_rule(wo, n, symmetric=symmetric)) for n in POLAR_SIZES)
+
+    def lit() -> Iterator[RuleSum]:
+        ends, before = LitRules(integrand, wo, symmetric=symmetric), 0
+        for n in POLAR_SIZES:
+            one = apply_rule(integrand, *ends.rule(n))
+            yield replace(one, points=one.points + ends.evaluations - before)
+            before = ends.evaluations
+
+    stages: list[tuple[str, Callable[[], Estimate]]] = [("slope-space quadrature", slopes)]
+    if not smooth and core >= BROAD and max_evaluations >= 4 * BRIEF:
+        stages = [(stages[0][0], lambda: slopes(BRIEF)), ("polar quadrature", lambda: around(polar()))]
+        if scan is not None and scan.dark:
+            stages.append(("polar quadrature", lambda: around(lit())))
+        stages.append(("slope-space quadrature", slopes))
+    method, first = stages[0]
+    found = first()
+    for name, stage in stages[1:]:
+        if found.converged:
+            break
+        spent += found.evaluations
+        method, found = name, stage()
 
     def lost() -> float:
         return 0.0 if scan is None else missed(found, scan.mean, scan.spread)
@@ -278,38 +299,22 @@ def hemisphere(
     )
 
 
-@dataclass(frozen=True)
-class Scan:
-    """A rough integral with its uncertainty, and the ridge of the lobe that was seen."""
-
-    mean: Any
-    spread: Any
-    ridge: Ridge | None
-
-
-def _scan(integrand: Integrand, wo: FloatArray, width: float, count: int = SCAN) -> Scan:
-    """Integrate roughly with points spread evenly, which see between the nodes of the rules."""
-    x, s = kronecker(count, 2).T
-    wi, weight, _ = slope_map(wo, width, x, s)
-    far = np.arange(count) % 2 == 0
-    wi[far] = mirrored(wi[far], wo)
-    terms = (np.asarray(integrand(wi), dtype=float).T * weight).T
-    ridge = find_ridge(wo, s, far, np.abs(terms.reshape(count, -1)).sum(axis=1))
-    return Scan(terms.mean(axis=0), terms.std(axis=0) / np.sqrt(count), ridge)
-
-
 def _confirmed(integrand: Integrand, wo: FloatArray, lobe: Lobe) -> Lobe:
     """Return the lobe around ``wo`` or that around its mirror direction, whichever is seen more evenly."""
     other = find_lobe(integrand, wo, around=(False,))
-    there = _scan(lambda w: integrand(turned(w)), wo, lobe.core)
-    here = _scan(integrand, wo, other.core)
+    there = look_over(lambda w: integrand(turned(w)), wo, lobe.core)
+    here = look_over(integrand, wo, other.core)
     least = np.abs(there.mean) - DOUBT * there.spread
     blind = np.any(np.abs(here.mean) + DOUBT * here.spread < least)  # it looks even where nothing is seen
     best = other if not blind and np.max(here.spread) < np.max(there.spread) else lobe
     return replace(best, evaluations=other.evaluations + 2 * SCAN)
 
 
-def missed(found: Estimate, mean: Any, spread: Any) -> float:
-    """Return by how much an integral and a scan differ beyond what either allows; 0 where they agree."""
-    difference = np.abs(found.value - mean)
-    return float(np.max(np.where(difference > DOUBT * spread + found.error, difference, 0.0)))
+def hopeful(rules: Iterator[RuleSum]) -> Iterator[RuleSum]:
+    """Go through rules until four of them do not look as if larger ones would be certain."""
+    values: list[Any] = []
+    for rule in rules:
+        yield rule
+        values.append(rule.value)
+        if len(values) > 3 and np.any(np.abs(values[-1] - values[-2]) > HOPELESS * rule.size):
+            return

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.measure.slope import gauss_legendre, mirrored
+from radiokit.measure.gauss import gauss_legendre
+from radiokit.measure.slope import mirrored
 
 __all__ = ["panels", "refracted", "refracted_inverse", "refracted_map", "refracted_rule", "rest_rule"]
 

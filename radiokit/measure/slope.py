@@ -11,11 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from radiokit.facts.errors import ParameterError
+from radiokit.measure.gauss import gauss_legendre
 
 __all__ = [
     "Lobe",
     "find_lobe",
-    "gauss_legendre",
     "mirrored",
     "slope_inverse",
     "slope_map",
@@ -33,21 +33,6 @@ KEPT = 2100
 
 RETRO = 0.1
 """How much more mass must be seen around ``wo`` than around its mirror direction to aim there."""
-
-
-@lru_cache(maxsize=64)
-def gauss_legendre(n: int) -> tuple[FloatArray, FloatArray]:
-    """Return the nodes and weights of the n-point Gauss-Legendre rule on [0, 1].
-
-    >>> x, w = gauss_legendre(3)
-    >>> round(float(w @ x**5), 15)
-    0.166666666666667
-    """
-    x, w = np.polynomial.legendre.leggauss(n)
-    x, w = (x + 1) / 2, w / 2
-    x.setflags(write=False)
-    w.setflags(write=False)
-    return x, w
 
 
 def slope_map(

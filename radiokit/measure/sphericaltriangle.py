@@ -76,7 +76,7 @@ class UniformSphericalTriangle(Warp):
         skew = _length(np.cross(v[0], v[1] - v[0])) / (r[0] * r[1])
         lean = float(dot(a, b))
         form = (
-            abs(float(dot(np.cross(v[1] - v[0], v[2] - v[0]), a))) / (r[1] * r[2] * max(sine, 5e-324)),
+            abs(float(dot(np.cross(v[1] - v[0], v[2] - v[0]), a))) / max(r[1] * r[2] * sine, 5e-324),
             float(dot(along, v[1] - v[0])) / float(r[1]),
             1.0 + lean if lean > 0.0 else skew * skew / (1.0 - lean),  # 1 + a·b
         )

@@ -10,8 +10,9 @@ import numpy.typing as npt
 
 from radiokit.measure.converge import Integrand
 from radiokit.measure.curves import CURVES, Curve
+from radiokit.measure.gauss import eased, gauss_legendre
 from radiokit.measure.ridge import Ridge
-from radiokit.measure.slope import gauss_legendre, mirrored, slope_map
+from radiokit.measure.slope import mirrored, slope_map
 
 __all__ = ["kinked", "split_rule"]
 
@@ -119,6 +120,8 @@ def split_rule(
     0.2
     """
     u, wu = gauss_legendre(n[0])
+    if any(curve.rooted for curve in curves):
+        u, wu = eased(u, wu)
     turns = _turns(curves, wo)
     sides = []
     for far in (False,) if symmetric or ridge is None else (False, True):

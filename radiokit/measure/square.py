@@ -14,8 +14,8 @@ import numpy.typing as npt
 from radiokit.facts.errors import NonFiniteError
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.converge import BLOCK, MEMORY, RuleSum, apply_rule, converge
+from radiokit.measure.gauss import gauss_legendre
 from radiokit.measure.refine import PANEL, refine
-from radiokit.measure.slope import gauss_legendre
 
 __all__ = ["Axis", "Focus", "crowded_square"]
 

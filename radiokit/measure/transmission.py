@@ -13,12 +13,14 @@ import numpy.typing as npt
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.converge import GK21, ROUNDING, Integrand, RuleSum, apply_rule, converge
+from radiokit.measure.curves import Curve, critical
 from radiokit.measure.lattice import kronecker
-from radiokit.measure.quadrature import SCAN, STEEPNESS, WIDTHS, hemisphere, missed
+from radiokit.measure.quadrature import STEEPNESS, WIDTHS, hemisphere
 from radiokit.measure.refraction import refracted, refracted_map, refracted_rule, rest_rule
+from radiokit.measure.scan import SCAN, missed
 from radiokit.measure.slope import PROBE_WIDTH, mirrored, slope_map
 
-__all__ = ["THIN", "find_width", "sphere", "transmission"]
+__all__ = ["THIN", "find_width", "reflection_edges", "sphere", "transmission"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -197,6 +199,7 @@ def sphere(
         rtol=rtol / 2,
         atol=atol / 2,
         max_evaluations=max_evaluations // 2,
+        edges=reflection_edges(eta),
         **options,
     )
     enough = max(atol / 2, rtol / 2 * float(np.min(np.abs(reflected.value))))
@@ -210,6 +213,15 @@ def sphere(
     note = "" if converged else found.note or "the tolerance was not reached"
     seconds = time.perf_counter() - start
     return replace(found, converged=converged, note=note, seconds=seconds)
+
+
+def reflection_edges(eta: float) -> tuple[Curve, ...]:
+    """Return where facets between media begin to reflect all light that comes from the side of ``wo``.
+
+    >>> reflection_edges(1.5)
+    ()
+    """
+    return critical(float(np.sqrt((1 - eta) * (1 + eta)))) if eta < 1 else ()
 
 
 @dataclass(frozen=True)

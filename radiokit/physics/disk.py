@@ -5,14 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
 from radiokit.facts.source import Source
+from radiokit.measure.exact import RationalVector, cross, inner, rational, root
 
-__all__ = ["DISK_SOURCE", "SOLID_ANGLE_SOURCE", "DiskView", "panels"]
+__all__ = ["DISK_SOURCE", "SOLID_ANGLE_SOURCE", "DiskView", "Horizon", "against", "panels"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -148,6 +150,51 @@ class DiskView:
 
         (value, shaken), error, evaluations = panels(strip, turn)
         return value, error + _EPS * (64 * value + 8 * shaken), evaluations
+
+
+@dataclass(frozen=True)
+class Horizon:
+    """A receiver's horizon beside a disk: squares and inner products without rounding, and what follows.
+
+    ``along`` and ``towards`` are the inner products of the receiver's normal ``up``, of squared length
+    ``length``, with the ways to the centre and across to the disk's plane. The horizon cuts the disk where
+    ``hidden`` is above 0. ``slope`` and ``facing`` are sine and cosine of the angle between the normal and
+    the way across, and ``aside`` how far the centre is from the receiver along the chord.
+    """
+
+    up: RationalVector
+    length: Fraction
+    along: Fraction
+    towards: Fraction
+    hidden: Fraction
+    slope: float
+    facing: float
+    aside: float
+
+    @property
+    def turn(self) -> float:
+        """Half the angle of the disk's edge that is above the horizon [rad]."""
+        return math.atan2(root(self.hidden), math.copysign(root(self.along * self.along), -self.along))
+
+
+def against(
+    normal: npt.ArrayLike, disk_normal: RationalVector, towards: RationalVector, radius: Fraction
+) -> Horizon:
+    """Return the horizon of a receiver with this normal beside a disk whose centre is ``towards`` it."""
+    n, v, m = rational(np.asarray(normal, dtype=float).tolist()), towards, disk_normal
+    length, across = inner(n, n), inner(m, m)
+    along, opposite, chord = inner(n, v), -inner(n, m), cross(n, m)
+    steep = inner(chord, chord) / across  # the square of the normal's part in the disk's plane
+    return Horizon(
+        up=n,
+        length=length,
+        along=along,
+        towards=opposite,
+        hidden=radius**2 * steep - along * along,
+        slope=root(steep / length),
+        facing=math.copysign(root(opposite * opposite / (length * across)), opposite),
+        aside=root(inner(chord, v) ** 2 / inner(chord, chord)) if steep else 0.0,
+    )
 
 
 def _bulge(angle: FloatArray) -> FloatArray:

@@ -28,6 +28,9 @@ Product = Callable[[Emitter], Callable[[FloatArray], Any]]
 MOST = 2_000_000
 """Evaluations when no budget is given."""
 
+UNKNOWN = "a shadow's edge runs through the light: no rule can bound the error"
+"""What is said of a light that names no pieces, where refinement does not reach the tolerance."""
+
 _LEAST = 512
 
 
@@ -87,7 +90,8 @@ def over_light(
         found.append(_over_piece(value, piece, receiver, seen, rtol=rtol, smooth=smooth, **limits))
     total = reduce(operator.add, found)
     converged = total.converged or bool(np.all(total.error <= rtol * np.abs(total.value)))
-    return replace(total, converged=converged, note="" if converged else total.note)
+    note = UNKNOWN if given is None else total.note
+    return replace(total, converged=converged, note="" if converged else note)
 
 
 def _over_piece(

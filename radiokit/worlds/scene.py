@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -12,15 +12,20 @@ import numpy as np
 import numpy.typing as npt
 
 from radiokit.contracts.emitter import Emitter
+from radiokit.contracts.occluder import Occluder, check_occluders
+from radiokit.contracts.shadowed import Shadowed, shadowed
 from radiokit.contracts.vectors import as_point, as_unit
 from radiokit.facts.directions import frame, to_local, to_world
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
+from radiokit.measure import lowdiscrepancy
 from radiokit.worlds.finite import over_light
 
-__all__ = ["Receiver", "check_emitter", "irradiance", "solid_angle"]
+__all__ = ["Receiver", "behind", "behind_all", "check_emitter", "irradiance", "solid_angle"]
 
 FloatArray = npt.NDArray[np.float64]
+
+_SCATTERED = 1 << 16
 
 
 @dataclass(frozen=True)
@@ -80,6 +85,7 @@ def irradiance(
     normal: npt.ArrayLike = (0.0, 0.0, 1.0),
     position: npt.ArrayLike = (0.0, 0.0, 0.0),
     rtol: float = 1e-8,
+    occluders: Occluder | Iterable[Occluder] = (),
 ) -> Estimate:
     """Return the irradiance E = ∫ L cosθ dω [W m⁻²] of an emitter on one side of a receiver.
 
@@ -95,18 +101,21 @@ def irradiance(
         Where the receiver is [m].
     rtol : float
         Relative tolerance of the quadrature, in (0, 1).
+    occluders : Occluder or iterable of Occluder, optional
+        Opaque bodies between the light and the receiver.
 
     Raises
     ------
     ParameterError
-        When ``normal`` or ``position`` is no vector, or the receiver lies on the light.
+        When ``normal`` or ``position`` is no vector, or the receiver lies on the light or an occluder.
 
     >>> from radiokit.emitters.directional import Directional
     >>> sun = Directional(direction=(0, 3, 4), irradiance=1000.0)
     >>> irradiance(sun).value
     800.0
     """
-    receiver, light = Receiver(normal, position), check_emitter(emitter)
+    receiver = Receiver(normal, position)
+    light = behind(emitter, occluders, receiver)
     start = time.perf_counter()
     found = light.irradiance_at(receiver.origin, receiver.axis)
     if found is not None:
@@ -122,17 +131,65 @@ def irradiance(
     return over_light(arriving, light, receiver, rtol)
 
 
-def solid_angle(emitter: Emitter, *, position: npt.ArrayLike = (0.0, 0.0, 0.0)) -> Estimate:
-    """Return the solid angle [sr] that an emitter subtends at ``position`` (3,) [m]; 0 for a delta light.
+def _scattered(integrand: Callable[[FloatArray], Any]) -> Estimate:
+    """Integrate over a light through which the edge of a shadow runs, by shifted lattices."""
+    found = lowdiscrepancy.mean(integrand, dimensions=2, samples=_SCATTERED, rng=0)
+    return replace(
+        found,
+        error=8 * found.error,
+        kind="truncation",
+        method="lattice over the light",
+        converged=False,
+        note="a shadow's edge runs through the light: no rule can bound the error",
+        dof=None,
+    )
+
+
+def behind(emitter: Any, occluders: Any, receiver: Receiver) -> Emitter:
+    """Return a light as a receiver sees it behind occluders."""
+    light = check_emitter(emitter)
+    found = check_occluders(occluders)
+    return shadowed(light, found, receiver.origin) if found else light
+
+
+def behind_all(emitters: Any, occluders: Any, position: Any) -> Any:
+    """Return lights as they are seen from a place behind occluders; as they are given, if there is none."""
+    found = check_occluders(occluders)
+    if not found:
+        return emitters
+    receiver = Receiver(position=position)
+    lights = [emitters] if isinstance(emitters, Emitter) else list(emitters)
+    return [behind(light, found, receiver) for light in lights]
+
+
+def solid_angle(
+    emitter: Emitter,
+    *,
+    position: npt.ArrayLike = (0.0, 0.0, 0.0),
+    occluders: Occluder | Iterable[Occluder] = (),
+) -> Estimate:
+    """Return the solid angle [sr] of an emitter from ``position`` (3,) [m]; 0 for a delta light.
+
+    With ``occluders``, that of what is seen of it behind them.
 
     Raises
     ------
     ParameterError
-        When ``position`` is no point, or lies on the light.
+        When ``position`` is no point, or lies on the light or an occluder.
 
     >>> from radiokit.emitters.constant import Constant
     >>> round(float(solid_angle(Constant()).value) / np.pi, 12)
     4.0
     """
     receiver = Receiver(position=position)
-    return check_emitter(emitter).solid_angle(receiver.origin)
+    light = behind(emitter, occluders, receiver)
+    found = light.solid_angle(receiver.origin)
+    if found.converged or not isinstance(light, Shadowed):
+        return found
+
+    def seen(u: FloatArray) -> FloatArray:
+        towards, density = light.sample(u, receiver.origin)
+        lit = light.visible(towards, receiver.origin) & (density > 0)
+        return np.divide(1.0, density, out=np.zeros_like(density), where=lit)
+
+    return _scattered(seen)

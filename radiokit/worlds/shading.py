@@ -11,12 +11,14 @@ import numpy as np
 import numpy.typing as npt
 
 from radiokit.contracts.emitter import Emitter
+from radiokit.contracts.occluder import Occluder
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.montecarlo import seed_from
 from radiokit.worlds.budget import Budget, Purse
 from radiokit.worlds.integral import integrate, patience
 from radiokit.worlds.planning import Plan, choose, explained, find_terms, integrates
 from radiokit.worlds.sampling import monte_carlo, sampling_is_better
+from radiokit.worlds.scene import behind_all
 from radiokit.worlds.terms import SMOOTH, Term
 
 __all__ = ["explain", "shade"]
@@ -39,6 +41,7 @@ def shade(
     evaluations: int | None = None,
     rng: int | np.random.Generator | None = None,
     executor: Executor | None = None,
+    occluders: Occluder | Iterable[Occluder] = (),
 ) -> Estimate:
     """Return the radiance Lo = ∫ f L cosθ dω [W m⁻² sr⁻¹] that a surface reflects towards ``wo``.
 
@@ -85,6 +88,8 @@ def shade(
         For Monte Carlo.
     executor : concurrent.futures.Executor, optional
         Runs the blocks of Monte Carlo; the answer does not depend on it.
+    occluders : Occluder or iterable of Occluder, optional
+        Opaque bodies between the lights and the surface; what they would reflect does not count.
 
     Returns
     -------
@@ -95,7 +100,7 @@ def shade(
     Raises
     ------
     ParameterError
-        When an argument is not allowed, or the surface lies on a light.
+        When an argument is not allowed, or the surface lies on a light or an occluder.
     UnknownNameError
         When there is no such method.
     RadiokitError
@@ -111,7 +116,15 @@ def shade(
     >>> round(float(shade(half, lights, (0.0, 0.6, 0.8))), 9)  # 0.5 · 1 + 0.5/π · π
     1.0
     """
-    _, terms = find_terms(f, emitters, wo, normal=normal, position=position, method=method, rtol=rtol)
+    _, terms = find_terms(
+        f,
+        behind_all(emitters, occluders, position),
+        wo,
+        normal=normal,
+        position=position,
+        method=method,
+        rtol=rtol,
+    )
     purse = Purse(seconds, evaluations, sum(integrates(term, method) for term in terms))
     generator = np.random.default_rng(seed_from(rng))
     total: Estimate | None = None
@@ -176,6 +189,7 @@ def explain(
     samples: int | None = None,
     seconds: float | None = None,
     evaluations: int | None = None,
+    occluders: Occluder | Iterable[Occluder] = (),
 ) -> Plan:
     """Return the plan that ``shade`` would follow with the same arguments: a row for each term.
 
@@ -184,7 +198,8 @@ def explain(
 
     Parameters
     ----------
-    f, emitters, normal, position, method, rtol, samples, seconds, evaluations
+    f, emitters, normal, position, method, rtol, samples, seconds, evaluations,
+    occluders
         As in ``shade``.
     wo : array_like, shape (3,), optional
         Unit vector to the viewer; along the normal when not given.
@@ -201,7 +216,15 @@ def explain(
         because the light arrives from single directions: the integral is a sum
         also possible: nothing
     """
-    subject, terms = find_terms(f, emitters, wo, normal=normal, position=position, method=method, rtol=rtol)
+    subject, terms = find_terms(
+        f,
+        behind_all(emitters, occluders, position),
+        wo,
+        normal=normal,
+        position=position,
+        method=method,
+        rtol=rtol,
+    )
     integrals = sum(integrates(term, method) for term in terms)
     purse = Purse(seconds, evaluations, integrals)
     share, time_share = purse.share(), None if seconds is None else seconds / max(integrals, 1)

@@ -11,7 +11,8 @@ import numpy as np
 from radiokit.contracts.albedo import albedo, integrand
 from radiokit.contracts.bsdf import BSDF
 from radiokit.facts.estimate import Estimate
-from radiokit.measure.slope import gauss_legendre, slope_rule
+from radiokit.measure.gauss import gauss_legendre
+from radiokit.measure.slope import slope_rule
 
 __all__ = ["METHODS", "SAMPLED", "Method", "classroom_rule", "fixed_slope_rule"]
 

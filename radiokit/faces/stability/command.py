@@ -18,7 +18,10 @@ __all__ = ["stability"]
 def stability(
     names: Annotated[
         list[str] | None,
-        typer.Argument(help="One row, with its lesson; without it, all. Models, with --models or --albedos."),
+        typer.Argument(
+            help="One row, with its lesson; without it, all. Models, with --models or --albedos; "
+            "closed forms, with --lights."
+        ),
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
     figures: Annotated[Path | None, typer.Option(help="Folder to draw the diagram into.")] = None,
@@ -28,22 +31,29 @@ def stability(
     albedos: Annotated[
         bool, typer.Option("--albedos", help="Every model's albedos against its twin's integral.")
     ] = False,
+    lights: Annotated[
+        bool, typer.Option("--lights", help="Every closed form of the lights, at hard configurations.")
+    ] = False,
     dense: Annotated[
         bool, typer.Option("--dense", help="More pairs, and more expensive integrals; takes much longer.")
     ] = False,
     workers: Annotated[
-        int | None, typer.Option(help="Local processes for models; all processors by default.")
+        int | None, typer.Option(help="Local processes for models and lights; all processors by default.")
     ] = None,
     scheduler: Annotated[str | None, typer.Option(help="Address of a Dask scheduler to use.")] = None,
 ) -> None:
     """Measure every kernel, and the textbook's formula beside it, where that loses its digits."""
-    if models or albedos:
+    if lights:
+        if models or albedos or dense or figures is not None:
+            raise ParameterError("lights", True, "alone, or with names, --json, --workers or --scheduler")
+        code = _lights(names or None, json, workers, scheduler)
+    elif models or albedos:
         if figures is not None:
             raise ParameterError("figures", str(figures), "left out for models: there is no diagram of them")
         code = _models(names or None, models, albedos, dense, json, workers, scheduler)
     else:
         if len(names or ()) > 1:
-            raise ParameterError("names", names, "one row, or models with --models or --albedos")
+            raise ParameterError("names", names, "one row, or several with --models, --albedos or --lights")
         code = _rows(names[0] if names else None, json, figures)
     if code:
         raise typer.Exit(code)
@@ -85,6 +95,25 @@ def _models(
                 show_albedos(rows)
     if json:
         show_json(data)
+    return _exit_code(outcomes)
+
+
+def _lights(names: list[str] | None, json: bool, workers: int | None, scheduler: str | None) -> int:
+    from radiokit.faces.stability.lights import light_stability
+    from radiokit.faces.stability.show_lights import show_lights
+    from radiokit.faces.workers import available_workers, open_executor
+
+    count = available_workers() if workers is None and scheduler is None else workers
+    with open_executor(count, scheduler) as executor, progress_bar("closed forms", not json) as progress:
+        found = light_stability(names, executor=executor, progress=progress)
+    if json:
+        show_json({"lights": [result.to_json() for result in found]})
+    else:
+        show_lights(found)
+    return _exit_code([result.outcome for result in found])
+
+
+def _exit_code(outcomes: list[Any]) -> int:
     order = (Outcome.VIOLATED, Outcome.INCONCLUSIVE, Outcome.HOLDS)
     return EXIT_CODES[next(outcome for outcome in order if outcome in (*outcomes, Outcome.HOLDS))]
 

@@ -19,7 +19,7 @@ __all__ = ["Lines", "boundaries", "float_function"]
 Place = Callable[[int, Any, Any], Any]
 """Values of all boundaries (G, ...) at a panel, azimuths and radii."""
 
-_RADII, _AZIMUTHS = 97, 96
+_RADII, _AZIMUTHS = 1025, 96  # lines that meet are lost where they are closer than a radius
 _BISECTIONS = 54
 _SAME = 1e-9  # how close zeros of two functions are that vanish together
 

@@ -121,7 +121,7 @@ def _plan(side: Side, eased: bool, most: int, tolerance: float) -> _Plan:
 
     j, _ = first([Rule(48, n, eased, midpoints) for n in azimuths], "azimuths")
     i, value = first([Rule(n, azimuths[j], eased, midpoints) for n in _RADII], "radii")
-    steps = ((min(i + k, len(_RADII) - 1), min(j + k, len(azimuths) - 1)) for k in range(3))
+    steps = ((min(i + k, len(_RADII) - 1), min(j + k, len(azimuths) - 1)) for k in range(4))
     rules = tuple(Rule(_RADII[r], azimuths[a], eased, midpoints) for r, a in steps)
     return _Plan(side, both, rules, at(rules[1])[1], value, at(rules[2])[0])
 
@@ -211,7 +211,8 @@ def _hemisphere(
     tolerances = (_PLANNED, coarse) if coarse > _PLANNED else (_PLANNED,)
     best: _Plan | None = None
     reasons, seen, zeros = [], 0, 0
-    rough = []
+    looks: list[float] = []
+    plans: list[tuple[Chart, float]] = []
     for cut, chart in itertools.product((False, True), charts):
         if best is not None and best.cost <= _CHEAP:
             break
@@ -219,7 +220,7 @@ def _hemisphere(
         if cut and not side.kinked:
             continue
         if not cut:
-            rough.append(sum(side.planned(far, _LOOK)[0] for far in (1, -1)))
+            looks.append(sum(side.planned(far, _LOOK)[0] for far in (1, -1)))
         for eased, tolerance in itertools.product((False, True), tolerances):
             seen += 1
             try:
@@ -228,6 +229,7 @@ def _hemisphere(
                 zeros += isinstance(problem, _VanishesError)
                 reasons.append(f"{chart.name}: {problem}")
                 continue
+            plans.append((chart, plan.value))
             if best is None or plan.cost < best.cost:
                 best = plan
             break
@@ -238,13 +240,16 @@ def _hemisphere(
     name = best.side.chart.name
     # A narrow lobe may stand between the nodes of angles: those made for it, first in the list, would see it.
     # Where nobody knows where the lobe is, any of the charts may be.
-    seers = rough if f.lobe_width() is None else rough[:1]
+    known = f.lobe_width() is not None
+    others = [value for chart, value in plans if chart is not best.side.chart]
+    made = [value for chart, value in plans if chart is charts[0] is not best.side.chart]
+    seers = [*looks[:1], *made] if known else [*looks, *others]
     if not any(abs(best.value - value) <= _ROUGHLY * abs(value) for value in seers):
-        raise NoTruthError(f"{name} give {best.value:.3g}, and {charts[0].name} about {rough[0]:.3g}")
+        raise NoTruthError(f"{name} give {best.value:.4g}, and others about {seers[0]:.4g}")
     if best.cost > most:
         raise NoTruthError(f"{name}: {best.cost} nodes would be needed, and {most} are allowed")
     spent, other = 0, mp.mpf(best.finest)
-    for k in (1, 2):
+    for k in (1, 2, 3):
         value, count = best.integral(k)
         spent += count
         off = float(abs(value - other))

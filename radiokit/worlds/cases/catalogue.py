@@ -13,6 +13,7 @@ import numpy as np
 
 from radiokit.contracts.bsdf import BSDF
 from radiokit.contracts.emitter import Emitter
+from radiokit.contracts.occluder import Occluder
 from radiokit.facts.errors import RadiokitError, UnknownNameError
 from radiokit.facts.estimate import Estimate
 from radiokit.facts.jsonable import jsonable
@@ -20,6 +21,7 @@ from radiokit.facts.source import Source
 from radiokit.facts.verdict import Evidence, Outcome, Verdict, Witness
 from radiokit.measure.statistics import z_test
 from radiokit.worlds.planning import METHODS, applies
+from radiokit.worlds.scene import behind_all
 from radiokit.worlds.shading import shade
 
 __all__ = ["Case", "Scene", "case", "list_cases", "shading_case"]
@@ -45,10 +47,12 @@ class Scene:
     wo: Triple = (0.0, 0.0, 1.0)
     normal: Triple = (0.0, 0.0, 1.0)
     position: Triple = (0.0, 0.0, 0.0)
+    occluders: tuple[Occluder, ...] = ()
 
     def applies(self, method: str) -> bool:
         """Return whether one of the methods of ``radiokit.shade`` can be used."""
-        return applies(method, self.f, self.emitters, self.wo, normal=self.normal, position=self.position)
+        lights = behind_all(self.emitters, self.occluders, self.position)
+        return applies(method, self.f, lights, self.wo, normal=self.normal, position=self.position)
 
     def shade(
         self,
@@ -69,6 +73,7 @@ class Scene:
             rtol=rtol,
             rng=rng,
             samples=SAMPLES if samples is None else samples,
+            occluders=self.occluders,
         )
 
 

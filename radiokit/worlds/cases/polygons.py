@@ -14,6 +14,7 @@ from radiokit.bsdfs.lambert import Lambert
 from radiokit.bsdfs.phong import Phong
 from radiokit.contracts.emitter import Emitter
 from radiokit.contracts.flat import FlatEmitter
+from radiokit.contracts.spectral import amount
 from radiokit.emitters.polygon import Polygon
 from radiokit.emitters.rectangle import Rectangle
 from radiokit.emitters.triangle import Triangle
@@ -139,7 +140,7 @@ def _by_moment(
     moment = axial_moments.double_axis_moment(
         vertices=light.corners, axis=(-wo[0], -wo[1], wo[2]), exponent=exponent, normal=(0.0, 0.0, 1.0)
     )
-    found = moment.scaled(light.radiance * (exponent + 2) / (2 * math.pi))
+    found = moment.scaled(amount(light.radiance) * (exponent + 2) / (2 * math.pi))
     error = found.error + 4 * np.spacing(found.value)
     return Estimate(found.value, error, "rounding", method="closed form")
 

@@ -1,0 +1,1 @@
+"""Render: small pictures, shaded pixel by pixel with the point shader, each pixel with its error."""
