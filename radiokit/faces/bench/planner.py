@@ -104,6 +104,7 @@ def _choice(
             scene.wo,
             normal=scene.normal,
             position=scene.position,
+            occluders=scene.occluders,
             method=method,
             rtol=rtol,
             seconds=seconds,
