@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from radiokit.contracts.emitter import Emitter
+from radiokit.contracts.spectral import times
 from radiokit.emitters.disk import Disk
 from radiokit.emitters.rectangle import Rectangle
 from radiokit.emitters.sphere import Sphere
@@ -23,7 +24,7 @@ from radiokit.measure.slope import slope_rule
 from radiokit.worlds.budget import Budget
 from radiokit.worlds.finite import MOST, over_light
 from radiokit.worlds.sampling import ZENITH, Sampler
-from radiokit.worlds.terms import Term, times
+from radiokit.worlds.terms import Term
 
 __all__ = ["GUARD", "expected_peaks", "integrate", "lobe_angle", "patience", "product_of", "whole_lobe"]
 

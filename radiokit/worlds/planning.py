@@ -157,6 +157,7 @@ def find_terms(
     for light in map(check_emitter, lights):
         parts = (DELTA_LIGHT,) if light.delta else (DELTA_LOBES, SMOOTH)
         found = [Term(model, light, receiver, local, part) for part in parts]
+        _ = found[0].shape  # material and light agree on the number of wavelengths
         terms += [term for term in found if term.exists]
     options = [_options(term) for term in terms]
     exact = all(each[0] == "sum" for each in options)

@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from radiokit.contracts.spectral import times
 from radiokit.facts.estimate import Estimate
 from radiokit.facts.source import Source
 from radiokit.measure import lowdiscrepancy
 from radiokit.measure.lattice import kronecker
 from radiokit.measure.montecarlo import mean
 from radiokit.worlds.budget import SHORTEST, Budget
-from radiokit.worlds.terms import MAX_SAMPLES, Term, times
+from radiokit.worlds.terms import MAX_SAMPLES, Term
 
 __all__ = [
     "BLOCK",

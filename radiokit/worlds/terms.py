@@ -12,11 +12,12 @@ import numpy.typing as npt
 
 from radiokit.contracts.bsdf import BSDF
 from radiokit.contracts.emitter import Emitter
+from radiokit.contracts.spectral import check_wavelengths, times
 from radiokit.facts.errors import NonFiniteError, RadiokitError
 from radiokit.facts.estimate import Estimate
 from radiokit.worlds.scene import Receiver
 
-__all__ = ["DELTA_LIGHT", "DELTA_LOBES", "MAX_SAMPLES", "SMOOTH", "Part", "Term", "times"]
+__all__ = ["DELTA_LIGHT", "DELTA_LOBES", "MAX_SAMPLES", "SMOOTH", "Part", "Term"]
 
 FloatArray = npt.NDArray[np.float64]
 Part = Literal["delta light", "delta lobes", "smooth"]
@@ -66,11 +67,11 @@ class Term:
 
     @cached_property
     def shape(self) -> tuple[int, ...]:
-        """The shape of one value: () for one wavelength, (K,) for K of them."""
+        """The shape of one value: () for one wavelength, (K,) for K of them, of material and light."""
         up = np.array([[0.0, 0.0, 1.0]])
-        wavelengths = getattr(self.light, "wavelengths", None)
-        of_light = () if wavelengths is None else (wavelengths,)
-        return tuple(np.shape(self.f.evaluate(up, self.wo[None, :]))[1:]) or of_light
+        value = self.f.evaluate(up, self.wo[None, :])
+        count = check_wavelengths(value.shape[1] if np.ndim(value) > 1 else None, self.light.wavelengths)
+        return () if count is None else (count,)
 
     def zero(self, note: str = "") -> Estimate:
         """Return 0, exactly."""
@@ -131,16 +132,3 @@ class Term:
         radiance = self.light.radiance_from(self.receiver.to_world(wi), self.receiver.origin)
         values = self.f.evaluate(wi, np.broadcast_to(self.wo, wi.shape))
         return times(values, times(radiance, np.maximum(wi[:, 2], 0.0)))
-
-
-def times(first: npt.ArrayLike, second: npt.ArrayLike) -> FloatArray:
-    """Return the product of two factors along N directions, each (N,) or (N, K).
-
-    >>> times([1.0, 2.0], [[1.0, 3.0], [1.0, 3.0]]).tolist()
-    [[1.0, 3.0], [2.0, 6.0]]
-    """
-    one, other = np.asarray(first, dtype=np.float64), np.asarray(second, dtype=np.float64)
-    if one.ndim < other.ndim:
-        one, other = other, one
-    result: FloatArray = one * (other if one.ndim == other.ndim else other[:, None])
-    return result
