@@ -456,3 +456,16 @@ def test_a_planted_wrong_term_is_found(monkeypatch):
         lambda self, *, height, facing: right(self, height=height * (1 + 1e-12), facing=facing),
     )
     assert not inside_bound(irradiance(disk, normal=normal), truth)
+
+
+@pytest.mark.parametrize("power", [13, 14, 15, 16, 20, 50])
+@pytest.mark.parametrize("cosine", [0.8, 0.0, -0.6, -1 + 1e-9])
+def test_a_disk_of_any_size_is_at_most_an_endless_plane(power, cosine):
+    """Its edge is so low that the disk fills all of half the sphere but a band."""
+    lamp = Disk(center=(0, 0, 1), normal=(0, 0, -1), radius=10.0**power, radiance=1.0)
+    sine = math.sqrt((1 - cosine) * (1 + cosine))
+    found = lamp.irradiance_at(np.zeros(3), np.array([sine, 0.0, cosine]))
+    endless = math.pi * (0.5 * (1 + cosine) if cosine > -0.5 else 0.5 * sine * sine / (1 - cosine))
+    assert abs(found.value - endless) <= found.error + 2 * math.pi * 10.0**-power
+    assert found.error <= 1e-12 + 2 * math.pi * 10.0**-power
+    assert found.evaluations < 10_000
