@@ -14,7 +14,7 @@ from sympy.functions.elementary.hyperbolic import HyperbolicFunction, InverseHyp
 from sympy.functions.elementary.trigonometric import InverseTrigonometricFunction, TrigonometricFunction
 
 from radiokit.physics.relations.dimension import NUMBER, Dimension
-from radiokit.physics.relations.hints import Found, describe, equation_clash, kind_difference
+from radiokit.physics.relations.hints import Found, describe, equation_clash, kind_difference, kinds_differ
 from radiokit.physics.relations.notation import Notation
 
 __all__ = ["Clash", "Dimensions", "check_dimensions"]
@@ -159,10 +159,16 @@ class _Walker:
         for e, found in known[1:]:
             shown = f"{first} is {describe(base)}, {e} is {describe(found)}"
             if found.dimension != base.dimension:
-                return self.clash("unit", where, shown, f"terms of one unit in {what}")
+                return self.clash(
+                    "unit",
+                    where,
+                    shown,
+                    f"terms of one unit in {what}",
+                    f"they differ by a factor in {found.dimension / base.dimension}",
+                )
             if None not in (found.order, base.order) and found.order != base.order:
                 return self.clash("order", where, shown, f"differentials of one order in {what}")
-            if found.kind and base.kind and found.kind != base.kind:
+            if kinds_differ(found, base):
                 return self.clash(
                     "kind", where, shown, f"terms of one kind in {what}", kind_difference(base, found)
                 )
@@ -279,14 +285,15 @@ class _Walker:
             self.find(arg)
         return Found()
 
+    def below(self, side: Any) -> list[str]:
+        """Return the differentials of quantities that stand below a fraction bar."""
+        symbols = sorted(sympy.fraction(side)[1].free_symbols, key=str)
+        known = [(symbol, self.notation.meanings.get(symbol)) for symbol in symbols]
+        return [str(symbol) for symbol, meaning in known if meaning and meaning.order and meaning.kind]
+
     def relation(self, e: Any) -> Found:
         left, right = self.find(e.lhs), self.find(e.rhs)
-        differentials = [
-            (str(symbol), meaning.kind)
-            for symbol in sorted(e.rhs.free_symbols | e.lhs.free_symbols, key=str)
-            if (meaning := self.notation.meanings.get(symbol)) is not None and meaning.order
-        ]
-        clash = equation_clash(left, right, differentials)
+        clash = equation_clash(left, right, self.below(e.lhs), self.below(e.rhs))
         if clash is not None:
             code, expected, hint = clash
             shown = f"the left side is {describe(left)}, the right side is {describe(right)}"

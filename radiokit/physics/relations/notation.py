@@ -14,13 +14,16 @@ from radiokit.facts.errors import ParameterError
 from radiokit.facts.quantities import quantity as find_quantity
 from radiokit.physics.relations.dimension import NUMBER, Dimension
 
-__all__ = ["HALF", "SR", "Meaning", "Notation"]
+__all__ = ["HALF", "SR", "Meaning", "Notation", "greek", "latex_name"]
 
 SR = sympy.Symbol("Ω_0", positive=True)
 """The unit solid angle, 1 sr, written out wherever a number becomes a solid angle: Ω = Ω₀ A/r²."""
 
 HALF = Fraction(1, 2)
 """The order of a side of a two-dimensional element: dω = Ω₀ sinθ dθ dφ is one differential of solid angle."""
+
+_NOUNS = {"m": "length", "m²": "area", "s": "time", "sr": "solid angle"}
+_PREPOSITIONS = ("at", "between", "from", "in", "of", "that", "which")
 
 _GREEK = dict(
     zip(
@@ -108,7 +111,7 @@ class Notation:
 
     def angle(self, name: str, words: str = "", within: tuple[float, float] = (0.1, 1.4), **more: Any) -> Any:
         """Add a plane angle [rad]; a direction's functions are cosθ and sinθ."""
-        return self.symbol(name, "rad", words, within=within, **more)
+        return self.symbol(name, "rad", f"angle {words}".strip(), within=within, **more)
 
     def differential(
         self, name: str, unit: str, words: str = "", *, kind: str = "", order: int | Fraction = 1
@@ -155,7 +158,7 @@ class Notation:
         atoms = {a for a in sympy.preorder_traversal(expression) if isinstance(a, sympy.Symbol)}
         names = {symbol: latex_name(symbol.name) for symbol in atoms}
         text = str(sympy.latex(expression, symbol_names=names))
-        return "".join(_greek(letter) for letter in text)
+        return "".join(greek(letter) for letter in text)
 
     def __getstate__(self) -> dict[str, Any]:
         return {"meanings": self.meanings, "ranges": self.ranges}
@@ -164,6 +167,8 @@ class Notation:
         """Return one line for a list of symbols, such as ``"E: irradiance [W/m²]"``."""
         meaning = self.meaning(symbol)
         words = ", ".join(text for text in (meaning.kind, meaning.words) if text)
+        if not meaning.kind and meaning.words.split(" ")[0] in _PREPOSITIONS:
+            words = f"{_NOUNS.get(str(meaning.dimension), 'value')} {meaning.words}"
         unit = f" [{meaning.dimension}]" if meaning.dimension != NUMBER else ""
         return f"{symbol}: {words or 'a number'}{unit}"
 
@@ -178,12 +183,13 @@ def latex_name(name: str) -> str:
     found = re.fullmatch(r"d(\d?)(\w+)", head)
     if found and len(head) > 1:
         power = f"^{{{found[1]}}}" if found[1] else ""
-        head = rf"\mathrm{{d}}{power}" + "".join(map(_greek, found[2])).strip()
+        head = rf"\mathrm{{d}}{power}" + "".join(map(greek, found[2])).strip()
     else:
-        head = "".join(map(_greek, head)).strip()
-    below = ",".join("".join(map(_greek, part)).strip() for part in subscripts)
+        head = "".join(map(greek, head)).strip()
+    below = ",".join("".join(map(greek, part)).strip() for part in subscripts)
     return f"{head}_{{{below}}}" if below else head
 
 
-def _greek(letter: str) -> str:
+def greek(letter: str) -> str:
+    """Return a Greek letter's command, with a space behind it, and any other letter as it is."""
     return f"\\{_GREEK[letter]} " if letter in _GREEK else letter

@@ -204,7 +204,7 @@ def _polygon() -> Derivation:
     gamma = n.symbol(
         "c", "1", "normal of the receiver times the outward normal of an edge's sector", of=(j,), real=True
     )
-    r, t = n.symbol("r", "1", "radius in a sector"), n.angle("τ", "angle in a sector")
+    r, t = n.symbol("r", "1", "radius in a sector"), n.angle("τ", "in a sector")
     sector = n.symbol("A", "1", "area of an edge's sector", of=(j,))
     cap = n.symbol("P", "1", "projected area of the spherical polygon", real=True)
     light, arriving = n.quantity("L", "radiance", "of the polygon"), n.quantity("E", "irradiance")
