@@ -62,9 +62,7 @@ def _direction(theta: float, phi: float) -> Any:
 
 @app.command()
 def validate(
-    names: Annotated[
-        list[str] | None, typer.Argument(help="Models, cases, derivations; by default all.")
-    ] = None,
+    names: Annotated[list[str] | None, typer.Argument(help="Models, cases, derivations; or all.")] = None,
     json: Json = False,
     workers: Annotated[int | None, typer.Option(help="Local processes; all processors by default.")] = None,
     scheduler: Annotated[str | None, typer.Option(help="Address of a Dask scheduler to use.")] = None,

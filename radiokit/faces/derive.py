@@ -1,4 +1,4 @@
-"""The command ``radiokit derive``: a formula's derivation, all of them, and whether every step is verified."""
+"""The command ``radiokit derive``: derivations of formulas, and whether each step is verified."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ class Proofs:
 
 
 def prove(task: tuple[str, bool]) -> tuple[str, tuple[Finding, ...]]:
-    """Return the findings of one derivation, in whatever process this runs; the task is its name and ``fresh``."""
+    """Return the findings of one derivation, wherever this runs; the task is its name and ``fresh``."""
     from radiokit.physics.relations.catalogue import derive as verified
 
     name, fresh = task

@@ -41,7 +41,8 @@ def describe(found: Found) -> str:
     names = [words for unit, words in _PLAIN.items() if Dimension.of(unit) == found.dimension]
     words = found.kind or (names[0] if names else "a number" if not found.dimension else "a quantity")
     if found.order:
-        order = {1: "a differential", -1: "one over a differential", 2: "a second-order differential"}
+        named = {1: "a differential", -1: "one over a differential", 2: "a second-order differential"}
+        order = {Fraction(power): text for power, text in named.items()}
         words = f"{order.get(found.order, f'a differential of order {found.order}')} of {words}"
     return f"{words} [{found.dimension}]" if found.dimension else words
 

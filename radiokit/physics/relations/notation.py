@@ -1,4 +1,4 @@
-"""Notation: what the symbols of a formula mean: their quantity, their unit, and whether they are differentials."""
+"""Notation: what the symbols of a formula mean: quantity, unit, and whether they are differentials."""
 
 from __future__ import annotations
 
@@ -25,16 +25,12 @@ HALF = Fraction(1, 2)
 _NOUNS = {"m": "length", "m²": "area", "s": "time", "sr": "solid angle"}
 _PREPOSITIONS = ("at", "between", "from", "in", "of", "that", "which")
 
-_GREEK = dict(
-    zip(
-        "αβγδεζηθικλμνξπρστυφχψωΓΔΘΛΞΠΣΦΨΩ",
-        (
-            "alpha beta gamma delta varepsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau "
-            "upsilon varphi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega"
-        ).split(),
-        strict=True,
-    )
-)
+_LETTERS = "αβγδεζηθικλμνξπρστυφχψωΓΔΘΛΞΠΣΦΨΩ"
+_COMMANDS = """
+    alpha beta gamma delta varepsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon
+    varphi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega
+"""
+_GREEK = dict(zip(_LETTERS, _COMMANDS.split(), strict=True))
 
 
 @dataclass(frozen=True)
@@ -63,7 +59,7 @@ class Meaning:
 
 
 class Notation:
-    """The symbols of a formula. Each method adds one and returns it, a SymPy symbol or function.
+    r"""The symbols of a formula. Each method adds one and returns it, a SymPy symbol or function.
 
     Symbols are positive unless assumptions say otherwise. ``within`` is the range from which random
     values are drawn where a formula is tried in numbers.
@@ -71,7 +67,7 @@ class Notation:
     >>> n = Notation()
     >>> E, theta = n.quantity("E", "irradiance"), n.angle("θ")
     >>> print(n.meaning(E).dimension, n.latex(E * sympy.cos(theta)))
-    W/m² E \\cos{\\left(\\theta \\right)}
+    W/m² E \cos{\left(\theta \right)}
     """
 
     def __init__(self) -> None:
@@ -90,7 +86,7 @@ class Notation:
         within: tuple[float, float] | None = None,
         **assumptions: bool,
     ) -> Any:
-        """Add a radiometric quantity, ``kind`` as ``radiokit.quantity`` takes it; ``of`` makes it a function."""
+        """Add a quantity, ``kind`` as ``radiokit.quantity`` takes it; ``of`` makes it a function."""
         found = find_quantity(kind)
         return self._add(name, found.unit, found.english, words, order, of, within, assumptions)
 
@@ -116,7 +112,7 @@ class Notation:
     def differential(
         self, name: str, unit: str, words: str = "", *, kind: str = "", order: int | Fraction = 1
     ) -> Any:
-        """Add a differential, such as dω in sr, dA in m^2, dt in s; a side of an element has ``order=HALF``."""
+        """Add a differential: dω in sr, dA in m^2, dt in s; a side of an element has ``order=HALF``."""
         return self._add(name, unit, kind, words, order, (), None, {})
 
     def _add(
@@ -174,10 +170,10 @@ class Notation:
 
 
 def latex_name(name: str) -> str:
-    """Return a symbol's name as LaTeX.
+    r"""Return a symbol's name as LaTeX.
 
     >>> print(latex_name("dω_i"), latex_name("d2Φ"), latex_name("L_λ"))
-    \\mathrm{d}\\omega_{i} \\mathrm{d}^{2}\\Phi L_{\\lambda}
+    \mathrm{d}\omega_{i} \mathrm{d}^{2}\Phi L_{\lambda}
     """
     head, *subscripts = name.split("_")
     found = re.fullmatch(r"d(\d?)(\w+)", head)

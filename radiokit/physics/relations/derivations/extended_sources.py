@@ -1,4 +1,4 @@
-"""Extended sources: the irradiance from a disk, a sphere, a sky, a rectangle, a polygon, an infinite plane."""
+"""Extended sources: the irradiance from a disk, a sphere, a sky, a rectangle, a polygon, a plane."""
 
 from __future__ import annotations
 
@@ -211,7 +211,7 @@ def _polygon() -> Derivation:
     return Derivation(
         name="irradiance-from-polygon",
         title="Lambert's formula for polygons",
-        statement="E = −(L/2) Σ Θ_j Γ_j·n over the edges, Γ_j the outward normals of the sectors to the edges.",
+        statement="E = −(L/2) Σ Θ_j Γ_j·n over the edges, Γ_j outward normals of their sectors.",
         assumptions=(_UNIFORM, "the polygon is wholly above the receiver's horizon"),
         notation=n,
         steps=(
