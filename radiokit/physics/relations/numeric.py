@@ -27,7 +27,7 @@ def points(
     """Yield random values for the free symbols, the same ones for the same ``name``."""
     rng = np.random.default_rng(int.from_bytes(hashlib.sha256(name.encode()).digest()[:8], "big"))
     symbols = sorted(expression.free_symbols, key=str)
-    for _ in range(count):
+    for _ in range(count if symbols else 1):
         yield {
             symbol: int(rng.integers(1, 9))
             if symbol.is_integer

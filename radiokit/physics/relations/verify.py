@@ -25,7 +25,7 @@ How = Literal["premise", "proved", "numerically at 50 digits", "refuted", "undec
 NUMERICALLY: How = "numerically at 50 digits"
 
 _AGREE, _DIFFER = 1e-45, 1e-12  # relative, at 50 digits; between them nothing is said
-_POINTS, _ROUGH = 6, 20
+_POINTS, _FEW, _ROUGH = 6, 2, 20  # points; points of a multiple integral; digits that refute
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,10 +100,13 @@ def _with_numbers(
         if means:
             return Outcome.HOLDS, "proved", means
         return Outcome.INCONCLUSIVE, "undecided", "the sign of the difference is not known"
-    if means and any(_nested(side) for side in (left, right)):
+    nested = any(_nested(side) for side in (left, right))
+    if means and nested:
         return Outcome.HOLDS, "proved", means
-    count, digits = (1, _ROUGH) if means else (_POINTS, DIGITS)
-    found = compared(left, right, name, notation.ranges, count, digits)
+    found = compared(left, right, name, notation.ranges, 1, _ROUGH)  # enough to refute
+    points = _FEW if nested else _POINTS
+    if found is not None and not means and found[0] <= _DIFFER:
+        found = compared(left, right, name, notation.ranges, points, DIGITS)
     if found is None:
         if means:
             return Outcome.HOLDS, "proved", means
@@ -115,7 +118,7 @@ def _with_numbers(
     if means:
         return Outcome.HOLDS, "proved", means
     if worst < _AGREE:
-        return Outcome.HOLDS, NUMERICALLY, f"agreement to {DIGITS} digits at {_POINTS} random points"
+        return Outcome.HOLDS, NUMERICALLY, f"agreement to {DIGITS} digits at {points} random points"
     return Outcome.INCONCLUSIVE, "undecided", f"the sides differ by {worst:.2g} of their size"
 
 
