@@ -39,6 +39,7 @@ def test_every_step_is_verified(name):
     wrong = [f"{s.relation}: {f.message}" for s, f in zip(found.steps, found.findings, strict=True)]
     assert found.ok, wrong
     assert found.verdict.ok
+    assert all(verdict.ok for verdict in found.verdicts)
     evidence = Evidence.MEASURED if name in NUMERIC else Evidence.PROVED
     assert found.verdict.evidence is evidence, wrong
     for step, finding in zip(found.steps, found.findings, strict=True):
@@ -92,6 +93,7 @@ def test_a_wrong_result_is_refuted():
     assert found.verdict.evidence is Evidence.REFUTED
     assert "differ by 0.33 of their size" in found.findings[1].message
     assert "step 2" in str(found.verdict.witness)
+    assert [verdict.outcome for verdict in found.verdicts] == [Outcome.VIOLATED]
 
 
 def test_a_wrong_step_between_right_ones_is_refuted():

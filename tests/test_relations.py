@@ -173,6 +173,9 @@ def test_half_a_power_of_a_unit():
 
 def test_a_notation_says_what_its_symbols_are():
     assert S.notation.describe(S.E) == "E: irradiance [W/m²]"
+    assert S.notation.describe(S.dE) == "dE: differential of irradiance [W/m²]"
+    assert S.notation.describe(S.dw) == "dω: differential of solid angle [sr]"
+    assert S.notation.describe(S.theta) == "θ: angle"
     assert S.notation.latex(eq(S.dE, S.L * S.dw)) == r"\mathrm{d}E = L \mathrm{d}\omega"
     with pytest.raises(ParameterError, match="name = 'E'"):
         S.notation.quantity("E", "irradiance")

@@ -162,7 +162,10 @@ def put_in(expression: Any, relation: Any, target: Any = None) -> Any:
     old, new = relation.lhs, relation.rhs
     if target is not None:
         unknown = sympy.Dummy(positive=target.is_positive)
-        solutions = sympy.solve((old - new).subs(target, unknown), unknown)
+        try:
+            solutions = sympy.solve((old - new).subs(target, unknown), unknown)
+        except NotImplementedError:
+            solutions = []
         if len(solutions) != 1 or solutions[0].has(target):
             raise ParameterError("using", target, f"what {relation} has one solution for")
         old, new = target, solutions[0]
