@@ -129,6 +129,17 @@ def test_a_wrong_antiderivative_is_refuted():
     assert "antiderivative = x**2" in found.findings[1].message
 
 
+def test_an_antiderivative_that_jumps_is_refuted():
+    n = Notation()
+    x, t, y = n.symbol("x"), n.symbol("t"), n.symbol("y")
+    jumps = sympy.atan(2 * sympy.tan(x / 2)) / 2  # at π, between the bounds
+    steps = (
+        premise(y, Integral(1 / (5 - 3 * cos(x)), (x, 0, 2 * pi), (t, 0, 1)), ""),
+        follows(y, 0, "", antiderivative=(x, jumps)),
+    )
+    assert planted(*steps, notation=n).outcome is Outcome.VIOLATED
+
+
 def test_what_is_not_declared_is_not_used():
     n = Notation()
     E, F, A = n.quantity("E", "irradiance"), n.quantity("Φ", "radiant_flux"), n.symbol("A", "m^2")
@@ -154,7 +165,10 @@ def test_a_wrong_limit_is_not_accepted():
     e = n.symbol("e")
     step = holds(Le(e, Rational(1, 2), evaluate=False), "")
     found = planted(premise(e, x / (1 + x), ""), step, notation=n)
-    assert found.outcome is Outcome.INCONCLUSIVE  # false from x = 1 on
+    assert found.outcome is Outcome.VIOLATED
+    assert "beyond the limit by" in found.findings[1].message  # false from x = 1 on
+    unknown = holds(Le(e, x + sympy.exp(-x), evaluate=False), "")
+    assert planted(premise(e, 1, ""), unknown, notation=n).outcome is Outcome.INCONCLUSIVE  # true, not shown
     one = holds(Le(e, 1, evaluate=False), "")
     assert planted(premise(e, x / (1 + x), ""), one, notation=n).ok
 
@@ -289,7 +303,7 @@ def test_exit_codes(outcome, expected, capsys, monkeypatch):
     bad = planted(s.rings, steps[outcome], notation=s.notation)
     monkeypatch.setitem(catalogue._catalogue(), "planted", bad)
     if outcome == "inconclusive":
-        monkeypatch.setattr("radiokit.physics.relations.verify._proof", lambda *_: "")
+        monkeypatch.setattr("radiokit.physics.relations.verify.proof", lambda *_: "")
     code, out, _ = run(capsys, "planted", "--fresh", "--json")
     assert (json.loads(out)["outcome"], code) == (outcome, expected)
     found = validate(names=["planted"])
