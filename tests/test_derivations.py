@@ -13,7 +13,7 @@ from sympy import Integral, Le, Rational, cos, pi, sin
 
 import radiokit as rk
 from radiokit.faces.cli import main
-from radiokit.faces.derive import SHARE, verify_all
+from radiokit.faces.proofs import SHARE, verify_all
 from radiokit.faces.validate import validate
 from radiokit.faces.workers import SerialExecutor
 from radiokit.facts.errors import ParameterError, UnknownNameError
