@@ -45,7 +45,10 @@ from .measure.kernels import select as select
 from .measure.twin import Twin as Twin
 from .physics import fresnel as fresnel
 from .physics import integrating_sphere as integrating_sphere
+from .physics import relations as relations
 from .physics import view_factor as view_factor
+from .physics.relations.catalogue import derive as derive
+from .physics.relations.catalogue import list_derivations as list_derivations
 from .worlds import enclosure as enclosure
 from .worlds.cases.catalogue import case as case
 from .worlds.cases.catalogue import list_cases as list_cases
