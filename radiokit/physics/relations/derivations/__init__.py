@@ -1,0 +1,1 @@
+"""Derivations: one file for each family of formulas; each lists its own in DERIVATIONS."""

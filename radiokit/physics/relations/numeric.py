@@ -1,0 +1,75 @@
+"""Numeric: formulas tried at random points with 50 digits, where SymPy finds no proof, and to catch a wrong one."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+import sympy
+from sympy.core.function import AppliedUndef
+
+from radiokit.measure.twin import compiled, working_precision
+
+__all__ = ["DIGITS", "compared", "points", "with_trial_functions"]
+
+DIGITS = 50
+_RANGE = (0.2, 1.3)
+_GUARD = 12
+
+_UNTRIABLE = (sympy.Limit, sympy.Sum, sympy.DiracDelta, sympy.Subs, sympy.Derivative)
+
+
+def points(
+    expression: Any, name: str, ranges: Mapping[Any, tuple[float, float]], count: int
+) -> Iterator[dict[Any, float]]:
+    """Yield random values for the free symbols, the same ones for the same ``name``."""
+    rng = np.random.default_rng(int.from_bytes(hashlib.sha256(name.encode()).digest()[:8], "big"))
+    symbols = sorted(expression.free_symbols, key=str)
+    for _ in range(count):
+        yield {
+            symbol: int(rng.integers(1, 9)) if symbol.is_integer else float(rng.uniform(*ranges.get(symbol, _RANGE)))
+            for symbol in symbols
+        }
+
+
+def with_trial_functions(expression: Any, name: str) -> Any:
+    """Put exp(Σ c x) with c of its own in the place of every function that is not given."""
+
+    def trial(applied: Any) -> Any:
+        digest = hashlib.sha256(f"{name} {applied.func}".encode()).digest()
+        return sympy.exp(sum(sympy.Rational(1 + byte % 7, 9) * arg for byte, arg in zip(digest, applied.args)))
+
+    return expression.replace(lambda part: isinstance(part, AppliedUndef), trial)
+
+
+def compared(
+    left: Any, right: Any, name: str, ranges: Mapping[Any, tuple[float, float]], count: int, digits: int = DIGITS
+) -> tuple[float, dict[str, float]] | None:
+    """Return the largest relative difference of two expressions at random points, and where it is.
+
+    None means that they cannot be evaluated there.
+    """
+    import mpmath
+
+    pair = sympy.Tuple(with_trial_functions(left, name).doit(integrals=False), with_trial_functions(right, name))
+    pair = sympy.Tuple(pair[0], pair[1].doit(integrals=False))
+    if pair.has(*_UNTRIABLE):
+        return None
+    worst: tuple[float, dict[str, float]] = (0.0, {})
+    for values in points(pair, name, ranges, count):
+        symbols = tuple(values)
+        with working_precision(digits + _GUARD):
+            numbers = [mpmath.mpf(value) for value in values.values()]
+            try:
+                first, second = (mpmath.mpmathify(compiled(part, symbols)(*numbers)) for part in pair)
+            except (ArithmeticError, AttributeError, NameError, TypeError, ValueError, KeyError):
+                return None
+            size = abs(first) + abs(second)
+            if not mpmath.isfinite(size):
+                return None
+            difference = float(abs(first - second) / size) if size else 0.0
+        if difference >= worst[0]:
+            worst = difference, {str(symbol): value for symbol, value in values.items()}
+    return worst
