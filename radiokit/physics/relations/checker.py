@@ -203,7 +203,9 @@ class _Walker:
             if found.dimension or found.order:
                 name = type(e).__name__
                 hint = _cancel(found)
-                self.clash("function", e, f"the argument {arg} of {name} is {describe(found)}", "a number", hint)
+                self.clash(
+                    "function", e, f"the argument {arg} of {name} is {describe(found)}", "a number", hint
+                )
         return Found()
 
     def quotient_of(self, e: Any) -> Found:

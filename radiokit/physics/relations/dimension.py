@@ -80,7 +80,9 @@ def _of(unit: str) -> Dimension:
     from radiokit.facts.units import parse
 
     found = parse("unit", 1, unit or "1").dimensionality
-    return Dimension._from({str(name): Fraction(power).limit_denominator(60) for name, power in found.items()})
+    return Dimension._from(
+        {str(name): Fraction(power).limit_denominator(60) for name, power in found.items()}
+    )
 
 
 def _power(name: str, power: Fraction) -> str:

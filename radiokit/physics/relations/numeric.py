@@ -29,7 +29,9 @@ def points(
     symbols = sorted(expression.free_symbols, key=str)
     for _ in range(count):
         yield {
-            symbol: int(rng.integers(1, 9)) if symbol.is_integer else float(rng.uniform(*ranges.get(symbol, _RANGE)))
+            symbol: int(rng.integers(1, 9))
+            if symbol.is_integer
+            else float(rng.uniform(*ranges.get(symbol, _RANGE)))
             for symbol in symbols
         }
 
@@ -39,13 +41,20 @@ def with_trial_functions(expression: Any, name: str) -> Any:
 
     def trial(applied: Any) -> Any:
         digest = hashlib.sha256(f"{name} {applied.func}".encode()).digest()
-        return sympy.exp(sum(sympy.Rational(1 + byte % 7, 9) * arg for byte, arg in zip(digest, applied.args)))
+        return sympy.exp(
+            sum(sympy.Rational(1 + byte % 7, 9) * arg for byte, arg in zip(digest, applied.args))
+        )
 
     return expression.replace(lambda part: isinstance(part, AppliedUndef), trial)
 
 
 def compared(
-    left: Any, right: Any, name: str, ranges: Mapping[Any, tuple[float, float]], count: int, digits: int = DIGITS
+    left: Any,
+    right: Any,
+    name: str,
+    ranges: Mapping[Any, tuple[float, float]],
+    count: int,
+    digits: int = DIGITS,
 ) -> tuple[float, dict[str, float]] | None:
     """Return the largest relative difference of two expressions at random points, and where it is.
 
@@ -53,7 +62,9 @@ def compared(
     """
     import mpmath
 
-    pair = sympy.Tuple(with_trial_functions(left, name).doit(integrals=False), with_trial_functions(right, name))
+    pair = sympy.Tuple(
+        with_trial_functions(left, name).doit(integrals=False), with_trial_functions(right, name)
+    )
     pair = sympy.Tuple(pair[0], pair[1].doit(integrals=False))
     if pair.has(*_UNTRIABLE):
         return None

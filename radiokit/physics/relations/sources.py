@@ -31,7 +31,12 @@ NICODEMUS_1977 = Source(
     title="Geometrical Considerations and Nomenclature for Reflectance",
     doi="10.6028/NBS.MONO.160",
 )
-BORN_WOLF = Source(authors="Born, Wolf", year=1999, title="Principles of Optics, 7th edition")
+BORN_WOLF = Source(
+    authors="Born, Wolf",
+    year=1999,
+    title="Principles of Optics, 7th edition",
+    doi="10.1017/CBO9781139644181",
+)
 ARVO = Source(
     authors="Arvo",
     year=1994,
@@ -53,4 +58,6 @@ VEACH = Source(authors="Veach", year=1997, title="Robust Monte Carlo Methods for
 def at(source: Source, equation: str) -> Source:
     """Return the source with the place in it."""
     return replace(source, equation=equation)
+
+
 WALSH = Source(authors="Walsh", year=1958, title="Photometry, 3rd edition")

@@ -68,9 +68,7 @@ def verify(name: str, steps: Sequence[Step], notation: Notation) -> tuple[Findin
     return tuple(findings)
 
 
-def _step(
-    name: str, step: Step, earlier: Sequence[Step], notation: Notation
-) -> tuple[Outcome, How, str]:
+def _step(name: str, step: Step, earlier: Sequence[Step], notation: Notation) -> tuple[Outcome, How, str]:
     checked = check_dimensions(step.relation, notation)
     if not checked.ok:
         return Outcome.VIOLATED, "refuted", str(checked)
@@ -261,17 +259,18 @@ def _proved_order(relation: Any, left: Any, right: Any) -> str:
 
 
 def _merged(expression: Any) -> Any:
-    """Return a sum in which integrals over the same range are one, and that one is 0 if its integrand is."""
-    total, integrands = sympy.Integer(0), {}
+    """Return a sum in which integrals over the same range are one, likewise sums, and drop out if their terms do."""
+    total, collected = sympy.Integer(0), {}
     for term in sympy.Add.make_args(sympy.expand(expression)):
-        coefficient, rest = term.as_independent(sympy.Integral, as_Add=False)
-        if isinstance(rest, sympy.Integral):
-            integrands[rest.limits] = integrands.get(rest.limits, 0) + coefficient * rest.function
+        coefficient, rest = term.as_independent(sympy.Integral, sympy.Sum, as_Add=False)
+        if isinstance(rest, (sympy.Integral, sympy.Sum)):
+            key = rest.func, rest.limits
+            collected[key] = collected.get(key, 0) + coefficient * rest.function
         else:
             total += term
-    for limits, integrand in integrands.items():
-        if not _is_zero(integrand):
-            total += sympy.Integral(integrand, *limits)
+    for (kind, limits), inner in collected.items():
+        if not _is_zero(inner):
+            total += kind(inner, *limits)
     return total
 
 

@@ -43,7 +43,9 @@ def _spectral_flux() -> Derivation:
         notation=n,
         steps=(
             premise(whole(end), Integral(part(wave), (wave, 0, end)), "all wavelengths up to Λ"),
-            follows(Derivative(whole(end), end), part(end), "the derivative of an integral by its end", "Φ(Λ)"),
+            follows(
+                Derivative(whole(end), end), part(end), "the derivative of an integral by its end", "Φ(Λ)"
+            ),
         ),
         source=at(ISO_LIGHT, "item 7-4.2"),
         tags=("definition", "spectral"),

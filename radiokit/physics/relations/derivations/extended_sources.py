@@ -60,7 +60,10 @@ def _sphere() -> Derivation:
     psi, phi = n.angle("ψ", "from the way to the centre"), n.angle("φ", "azimuth about that way")
     mu = n.symbol("μ", "1", "cosψ")
     R, d = n.symbol("R", "m", "radius", within=(0.1, 0.5)), n.symbol("d", "m", "to the centre", within=(1, 2))
-    beta, alpha = n.angle("β", "tilt of the receiver from the centre"), n.angle("α", "half-angle of the sphere")
+    beta, alpha = (
+        n.angle("β", "tilt of the receiver from the centre"),
+        n.angle("α", "half-angle of the sphere"),
+    )
     cosine = cos(beta) * cos(psi) + sin(beta) * sin(psi) * cos(phi)
     flat = 2 * pi * cos(beta) * SR * light
     return Derivation(
@@ -77,9 +80,7 @@ def _sphere() -> Derivation:
             ),
             premise(sin(alpha), R / d, "a tangent from the receiver touches the sphere", "tangent"),
             follows(arriving, flat * Integral(cos(psi) * sin(psi), (psi, 0, alpha)), "cosφ has the mean 0"),
-            follows(
-                arriving, flat * Integral(mu, (mu, cos(alpha), 1)), "μ = cosψ", change={mu: cos(psi)}
-            ),
+            follows(arriving, flat * Integral(mu, (mu, cos(alpha), 1)), "μ = cosψ", change={mu: cos(psi)}),
             follows(arriving, pi * SR * light * cos(beta) * sin(alpha) ** 2, "∫ μ dμ"),
             follows(arriving, pi * SR * light * cos(beta) * (R / d) ** 2, "the tangent put in", "tangent"),
         ),
@@ -109,7 +110,9 @@ def _hemisphere() -> Derivation:
                 2 * pi * SR * light * Integral(cos(theta) * sin(theta), (theta, 0, pi / 2)),
                 "nothing depends on the azimuth",
             ),
-            follows(arriving, 2 * pi * SR * light * Integral(mu, (mu, 0, 1)), "μ = cosθ", change={mu: cos(theta)}),
+            follows(
+                arriving, 2 * pi * SR * light * Integral(mu, (mu, 0, 1)), "μ = cosθ", change={mu: cos(theta)}
+            ),
             follows(arriving, pi * SR * light, "∫ μ dμ = 1/2"),
         ),
         source=LAMBERT,
@@ -133,7 +136,9 @@ def _tilted_sky() -> Derivation:
             premise(
                 arriving,
                 Integral(
-                    light * sin(psi) * cos(alpha) * SR * sin(psi), (alpha, -pi / 2, pi / 2 - beta), (psi, 0, pi)
+                    light * sin(psi) * cos(alpha) * SR * sin(psi),
+                    (alpha, -pi / 2, pi / 2 - beta),
+                    (psi, 0, pi),
                 ),
                 "E = ∫ L cosθ dω over the lune above both horizons, cosθ = sinψ cosα",
             ),
@@ -196,7 +201,9 @@ def _polygon() -> Derivation:
     count = n.symbol("m", "1", "number of edges", integer=True, positive=True)
     j = n.symbol("j", "1", "number of an edge", integer=True, positive=True)
     edge = n.angle("Θ", "that an edge subtends", of=(j,))
-    gamma = n.symbol("c", "1", "normal of the receiver times the outward normal of an edge's sector", of=(j,), real=True)
+    gamma = n.symbol(
+        "c", "1", "normal of the receiver times the outward normal of an edge's sector", of=(j,), real=True
+    )
     r, t = n.symbol("r", "1", "radius in a sector"), n.angle("τ", "angle in a sector")
     sector = n.symbol("A", "1", "area of an edge's sector", of=(j,))
     cap = n.symbol("P", "1", "projected area of the spherical polygon", real=True)
@@ -208,14 +215,18 @@ def _polygon() -> Derivation:
         assumptions=(_UNIFORM, "the polygon is wholly above the receiver's horizon"),
         notation=n,
         steps=(
-            premise(arriving, light * SR * cap, "E = ∫ L n·ω dω: the projection of the polygon on the unit sphere"),
+            premise(
+                arriving, light * SR * cap, "E = ∫ L n·ω dω: the projection of the polygon on the unit sphere"
+            ),
             premise(
                 cap + Sum(gamma(j) * sector(j), (j, 1, count)),
                 0,
                 "Gauss: the outward areas of a closed surface, seen along n, add up to 0",
                 "closed",
             ),
-            premise(sector(j), Integral(r, (r, 0, 1), (t, 0, edge(j))), "a sector of the unit disk", "sector"),
+            premise(
+                sector(j), Integral(r, (r, 0, 1), (t, 0, edge(j))), "a sector of the unit disk", "sector"
+            ),
             follows(sector(j), edge(j) / 2, "its area", label="area"),
             follows(
                 arriving,

@@ -43,7 +43,9 @@ def _exitance() -> Derivation:
                 2 * pi * SR * light * Integral(cos(theta) * sin(theta), (theta, 0, pi / 2)),
                 "nothing depends on the azimuth",
             ),
-            follows(exitance, 2 * pi * SR * light * Integral(mu, (mu, 0, 1)), "μ = cosθ", change={mu: cos(theta)}),
+            follows(
+                exitance, 2 * pi * SR * light * Integral(mu, (mu, 0, 1)), "μ = cosθ", change={mu: cos(theta)}
+            ),
             follows(exitance, pi * SR * light, "∫ μ dμ = 1/2"),
         ),
         source=LAMBERT,
@@ -96,7 +98,9 @@ def _disk_flux() -> Derivation:
                 2 * pi * SR * axial * Integral(cos(theta) * sin(theta), (theta, 0, pi / 2)),
                 "nothing depends on the azimuth",
             ),
-            follows(flux, 2 * pi * SR * axial * Integral(mu, (mu, 0, 1)), "μ = cosθ", change={mu: cos(theta)}),
+            follows(
+                flux, 2 * pi * SR * axial * Integral(mu, (mu, 0, 1)), "μ = cosθ", change={mu: cos(theta)}
+            ),
             follows(flux, pi * SR * axial, "∫ μ dμ = 1/2"),
         ),
         source=at(ISO_LIGHT, "item 7-5.1"),

@@ -53,7 +53,9 @@ def _irradiance() -> Derivation:
         steps=(
             premise(arriving, flux / dA, "definition of irradiance"),
             premise(flux, intensity * dw, "definition of intensity"),
-            premise(dw, SR * dA * cos(theta) / r**2, "the receiver's solid angle: its projected area over r²"),
+            premise(
+                dw, SR * dA * cos(theta) / r**2, "the receiver's solid angle: its projected area over r²"
+            ),
             follows(arriving, intensity * dw / dA, "the flux put in", "dΦ"),
             follows(arriving, SR * intensity * cos(theta) / r**2, "the solid angle put in", "dω"),
         ),
@@ -101,7 +103,9 @@ def _five_times() -> Derivation:
         notation=n,
         steps=(
             premise(
-                exact, pi * SR * light * (D / 2) ** 2 / ((D / 2) ** 2 + d**2), "under a disk (irradiance-under-disk)"
+                exact,
+                pi * SR * light * (D / 2) ** 2 / ((D / 2) ** 2 + d**2),
+                "under a disk (irradiance-under-disk)",
             ),
             premise(intensity, light * pi * (D / 2) ** 2, "I = L A along the axis"),
             premise(point, SR * intensity / d**2, "the inverse square (irradiance-from-intensity)"),

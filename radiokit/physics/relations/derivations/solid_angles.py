@@ -136,7 +136,9 @@ def _triangle() -> Derivation:
             premise(tan(total), ratio / tan(C / 2), "Napier's analogy", "Napier"),
             premise(cosine, cos(a) * cos(b) + sin(a) * sin(b) * cos(C), "the cosine rule"),
             premise(triple, sin(a) * sin(b) * sin(C), "the volume of the three unit vectors"),
-            follows(tan(omega / (2 * SR)), tan(total + C / 2 - pi / 2), "half the excess", "Ω", "E", label="t"),
+            follows(
+                tan(omega / (2 * SR)), tan(total + C / 2 - pi / 2), "half the excess", "Ω", "E", label="t"
+            ),
             follows(
                 tan(omega / (2 * SR)),
                 (tan(total) * tan(C / 2) - 1) / (tan(total) + tan(C / 2)),

@@ -32,7 +32,14 @@ def _along_a_ray() -> Derivation:
             premise(w2, SR * A1 * cos(t1) / r**2, "solid angle of the first element"),
             premise(flux, L1 * cos(t1) * A1 * w1, "definition of radiance, at the first", "leaves"),
             premise(L2, flux / (cos(t2) * A2 * w2), "definition of radiance, at the second; no flux is lost"),
-            follows(w1 * A1 * cos(t1), w2 * A2 * cos(t2), "the étendue is the same from both ends", "dω_1", "dω_2", label="étendue"),
+            follows(
+                w1 * A1 * cos(t1),
+                w2 * A2 * cos(t2),
+                "the étendue is the same from both ends",
+                "dω_1",
+                "dω_2",
+                label="étendue",
+            ),
             follows(L2, L1, "flux and solid angles put in", "leaves", "dω_1", "dω_2"),
         ),
         source=NICODEMUS_1963,
@@ -42,7 +49,10 @@ def _along_a_ray() -> Derivation:
 
 def _across_an_interface() -> Derivation:
     n = Notation()
-    n1, n2 = (n.symbol(f"n_{i}", "1", "index of refraction", within=w) for i, w in ((1, (1.0, 1.2)), (2, (1.3, 2.0))))
+    n1, n2 = (
+        n.symbol(f"n_{i}", "1", "index of refraction", within=w)
+        for i, w in ((1, (1.0, 1.2)), (2, (1.3, 2.0)))
+    )
     t1, phi = n.angle("θ_1", "of incidence"), n.angle("φ", "azimuth, the same on both sides")
     t2 = n.angle("θ_2", "of refraction", of=(t1,))
     L1, L2 = n.quantity("L_1", "radiance", "before"), n.quantity("L_2", "radiance", "behind")
@@ -65,7 +75,11 @@ def _across_an_interface() -> Derivation:
             premise(flux, L1 * cos(t1) * w1 * dA, "flux of the beam"),
             premise(L2, flux / (cos(t2(t1)) * w2 * dA), "definition of radiance; no flux is lost"),
             follows(
-                Derivative(t2(t1), t1), n1 * cos(t1) / (n2 * sqrt(1 - (n1 * sin(t1) / n2) ** 2)), "Snell's law differentiated", "Snell", label="spread"
+                Derivative(t2(t1), t1),
+                n1 * cos(t1) / (n2 * sqrt(1 - (n1 * sin(t1) / n2) ** 2)),
+                "Snell's law differentiated",
+                "Snell",
+                label="spread",
             ),
             follows(
                 n2**2 * cos(t2(t1)) * w2,
@@ -86,7 +100,10 @@ def _across_an_interface() -> Derivation:
 
 def _camera() -> Derivation:
     n = Notation()
-    light, arriving = n.quantity("L", "radiance", "of the scene"), n.quantity("E", "irradiance", "on the sensor")
+    light, arriving = (
+        n.quantity("L", "radiance", "of the scene"),
+        n.quantity("E", "irradiance", "on the sensor"),
+    )
     theta = n.angle("θ", "from the axis")
     d, D = n.symbol("d", "m", "from the pupil to the sensor"), n.symbol("D", "m", "diameter of the pupil")
     N = n.symbol("N", "1", "f-number")
@@ -109,7 +126,9 @@ def _camera() -> Derivation:
             premise(N, d / D, "definition of the f-number"),
             follows(arriving, SR * light * area * cos(theta) ** 2 / r**2, "the solid angle put in", "Ω"),
             follows(arriving, SR * light * area * cos(theta) ** 4 / d**2, "the cos⁴ law", "r"),
-            follows(arriving, pi * SR * light * cos(theta) ** 4 / (4 * N**2), "the f-number put in", "A", ("N", d)),
+            follows(
+                arriving, pi * SR * light * cos(theta) ** 4 / (4 * N**2), "the f-number put in", "A", ("N", d)
+            ),
         ),
         source=at(BORN_WOLF, "section 4.8"),
         tags=("radiance", "camera", "lecture"),
