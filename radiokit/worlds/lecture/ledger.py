@@ -255,16 +255,15 @@ def _chosen(slide: int | str | None) -> Iterable[Entry]:
 
 
 def _judged(checks: tuple[Check, ...], printed: str) -> Verdict:
-    """Run the checks; the first that does not hold decides, otherwise all are told of."""
-    verdicts = []
-    for check in checks:
-        verdict = check.judge(printed)
-        if not verdict.ok:
-            return verdict
-        verdicts.append(verdict)
-    weakest = max(verdicts, key=lambda verdict: list(Evidence).index(verdict.evidence))
+    """Run all the checks. Those that do not hold decide, and tell it together; otherwise all of them do."""
+    verdicts = [check.judge(printed) for check in checks]
+    for outcome in (Outcome.VIOLATED, Outcome.INCONCLUSIVE, Outcome.HOLDS):
+        deciding = [verdict for verdict in verdicts if verdict.outcome is outcome]
+        if deciding:
+            break
+    weakest = max(deciding, key=lambda verdict: list(Evidence).index(verdict.evidence))
     return replace(
         weakest,
-        message="; ".join(verdict.message for verdict in verdicts),
+        message="; ".join(verdict.message for verdict in deciding),
         seconds=sum(verdict.seconds for verdict in verdicts),
     )

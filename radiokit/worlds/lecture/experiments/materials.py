@@ -194,14 +194,10 @@ def glowing(emissivity: float) -> Verdict:
 
 
 def by_wavelength() -> Verdict:
-    """A spectrum at once, and each wavelength alone."""
-    f = bsdf("lambert", reflectance=(0.1, 0.5, 0.9))
-    lamp = emitter("point", position=(0, 0, 2), intensity=(3.0, 2.0, 1.0))
-    at_once = np.asarray(shade(f, lamp, _TILT).value)
-    alone = [
-        float(shade(bsdf("lambert", reflectance=r), emitter("point", position=(0, 0, 2), intensity=i), _TILT).value)
-        for r, i in ((0.1, 3.0), (0.5, 2.0), (0.9, 1.0))
-    ]
+    """A surface of three wavelengths at once, and each of them alone."""
+    spectrum, lamp = (0.1, 0.5, 0.9), emitter("point", position=(0, 0, 2), intensity=3.0)
+    at_once = np.asarray(shade(bsdf("lambert", reflectance=spectrum), lamp, _TILT).value)
+    alone = [float(shade(bsdf("lambert", reflectance=share), lamp, _TILT).value) for share in spectrum]
     gap = float(np.max(np.abs(at_once - alone)))
     return found("each wavelength for itself", gap, 0.0, 1e-15, f"at once and one by one differ by {gap:.1g}")
 
