@@ -1,4 +1,4 @@
-"""Validate: the main job. Every model before every judge, every closed-form case by every method."""
+"""Validate: the main job. Derivations, the lecture, every model before every judge, every case by every method."""
 
 from __future__ import annotations
 
@@ -13,13 +13,17 @@ from typing import Any
 from radiokit.checks.claims import claims
 from radiokit.checks.judge import check
 from radiokit.contracts.bsdf import REGISTRY, bsdf
+from radiokit.faces.derive import prove
 from radiokit.faces.workers import SerialExecutor
 from radiokit.facts.errors import RadiokitError, UnknownNameError
 from radiokit.facts.jsonable import jsonable
 from radiokit.facts.report import EXIT_CODES, Report
 from radiokit.facts.verdict import Evidence, Outcome, Verdict
 from radiokit.measure.statistics import sidak
+from radiokit.physics.relations.catalogue import list_derivations, unverified
+from radiokit.physics.relations.derivation import Derivation, Finding
 from radiokit.worlds.cases.catalogue import case, list_cases
+from radiokit.worlds.lecture.ledger import lecture_claims
 
 __all__ = ["LEVEL", "CaseRow", "Validation", "everything", "validate"]
 
@@ -73,11 +77,14 @@ class Validation:
     cases: tuple[CaseRow, ...]
     seconds: float
     workers: int
+    derivations: tuple[Derivation, ...] = ()
+    lecture: tuple[Verdict, ...] = ()
 
     @property
     def outcome(self) -> Outcome:
         """The worst outcome of what must hold."""
-        found = {row.verdict.outcome for row in self.cases}
+        found = {row.verdict.outcome for row in self.cases} | {each.outcome for each in self.derivations}
+        found |= {verdict.outcome for verdict in self.lecture}
         found |= {v.outcome for report in self.models for v in report if v.check in MUST_HOLD}
         for outcome in (Outcome.VIOLATED, Outcome.INCONCLUSIVE):
             if outcome in found:
@@ -99,6 +106,8 @@ class Validation:
             "machine": machine(),
             "models": [report.to_json() for report in self.models],
             "cases": [row.to_json() for row in self.cases],
+            "derivations": [each.verdict.to_json() for each in self.derivations],
+            "lecture": [verdict.to_json() for verdict in self.lecture],
         }
 
 
@@ -122,7 +131,7 @@ def everything(
     Raises
     ------
     UnknownNameError
-        When one of ``names`` is neither a model nor a case.
+        When one of ``names`` is neither a model nor a case, nor a derivation, nor "lecture".
 
     >>> everything(["lambert"])[0][1]
     ('lambert', {'reflectance': 0.5})
@@ -131,7 +140,7 @@ def everything(
     rows = [(name, method) for name in list_cases() for method in case(name).methods]
     if names is None:
         return models, rows
-    wanted, known = list(names), [*REGISTRY.classes, *list_cases()]
+    wanted, known = list(names), [*REGISTRY.classes, *list_cases(), *list_derivations(), "lecture"]
     for name in wanted:
         if name not in known:
             raise UnknownNameError("model or case", name, known)
@@ -146,12 +155,12 @@ def validate(
     seed: int = 0,
     progress: Callable[[int, int], None] | None = None,
 ) -> Validation:
-    """Put every model before every judge, and answer every closed-form case by every method.
+    """Verify every derivation, put every model before every judge, answer every case by every method.
 
     Parameters
     ----------
     names : iterable of str, optional
-        Only these models and cases.
+        Only these models, cases and derivations; "lecture" for the lecture's claims.
     executor : concurrent.futures.Executor, optional
         Where the work is done; the findings do not depend on it.
     workers : int
@@ -162,29 +171,43 @@ def validate(
         Called with the number of finished tasks and the number of all.
     """
     start = time.perf_counter()
+    names = None if names is None else list(names)
     models, rows = everything(names)
     count = len(models) + len(rows)  # all share the level, whether or not they are statistical
     tasks: list[tuple[Any, ...]] = [("model", name, values, count) for name, values in models]
     tasks += [("case", name, method, count, seed + i) for i, (name, method) in enumerate(rows)]
+    tasks += [("derivation", name) for name in list_derivations() if names is None or name in names]
+    if names is None or "lecture" in names:
+        tasks += [("lecture", claim.entry.name) for claim in lecture_claims()]
     found = list(_run(executor or SerialExecutor(), tasks, progress))
     return Validation(
         models=tuple(item for item in found if isinstance(item, Report)),
         cases=tuple(item for item in found if isinstance(item, CaseRow)),
         seconds=time.perf_counter() - start,
         workers=workers,
+        derivations=tuple(item for item in found if isinstance(item, Derivation)),
+        lecture=tuple(item for item in found if isinstance(item, Verdict)),
     )
 
 
 def _run(
     executor: Executor, tasks: Sequence[tuple[Any, ...]], progress: Callable[[int, int], None] | None
-) -> Iterator[Report | CaseRow]:
+) -> Iterator[Report | CaseRow | Derivation | Verdict]:
     for done, item in enumerate(executor.map(_task, tasks), start=1):
         if progress is not None:
             progress(done, len(tasks))
-        yield item
+        if isinstance(item, tuple):  # findings travel between processes, symbols do not
+            name, findings = item
+            yield replace(unverified(name), findings=findings)
+        else:
+            yield item
 
 
-def _task(task: tuple[Any, ...]) -> Report | CaseRow:
+def _task(task: tuple[Any, ...]) -> Report | CaseRow | Verdict | tuple[str, tuple[Finding, ...]]:
+    if task[0] == "derivation":
+        return prove((task[1], False))
+    if task[0] == "lecture":
+        return lecture_claims()[task[1]].judgement
     if task[0] == "model":
         return _judge_model(*task[1:])
     return _answer_case(*task[1:])

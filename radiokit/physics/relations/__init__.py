@@ -1,4 +1,4 @@
-"""Relations: the formulas of radiometry as symbols with units and kinds, derived step by step and verified."""
+"""Relations: the formulas of radiometry as symbols with units and kinds, derived in verified steps."""
 
 import lazy_loader as _lazy
 

@@ -70,7 +70,7 @@ def _finding(data: dict[str, Any]) -> Finding:
 
 
 def store(derivation: Derivation) -> None:
-    """Keep the findings, unless one is undecided, since more time may decide it; do nothing where none can be kept."""
+    """Keep the findings where there is room, unless one is undecided, since more time may decide it."""
     if derivation.outcome is Outcome.INCONCLUSIVE:
         return
     text = json.dumps(

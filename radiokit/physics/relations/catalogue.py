@@ -1,4 +1,4 @@
-"""Catalogue: finds the derivations in their folder by name, and verifies them, or remembers that they were."""
+"""Catalogue: finds derivations in their folder by name, verifies them, or remembers that they were."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Derivation: a formula, its premises and its verified steps, and how a notebook, a terminal and a program see it."""
+"""Derivation: a formula, its premises and its steps, their findings, and how they are shown."""
 
 from __future__ import annotations
 

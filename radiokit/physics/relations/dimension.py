@@ -81,7 +81,7 @@ def _of(unit: str) -> Dimension:
 
     found = parse("unit", 1, unit or "1").dimensionality
     return Dimension._from(
-        {str(name): Fraction(power).limit_denominator(60) for name, power in found.items()}
+        {str(name): Fraction(str(power)).limit_denominator(60) for name, power in found.items()}
     )
 
 

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from radiokit.physics.relations.dimension import NUMBER, Dimension
 
-__all__ = ["Found", "describe", "equation_clash", "kind_difference"]
+__all__ = ["Found", "describe", "equation_clash", "kind_difference", "kinds_differ"]
 
 _ELEMENTS = (
     ("sr", "a solid angle dω", "a solid angle (Δω_j, or Ω₀ = 1 sr)"),
@@ -41,9 +41,15 @@ def describe(found: Found) -> str:
     names = [words for unit, words in _PLAIN.items() if Dimension.of(unit) == found.dimension]
     words = found.kind or (names[0] if names else "a number" if not found.dimension else "a quantity")
     if found.order:
-        order = {1: "a differential", -1: "one over a differential", 2: "a second-order differential"}
+        named = {1: "a differential", -1: "one over a differential", 2: "a second-order differential"}
+        order = {Fraction(power): text for power, text in named.items()}
         words = f"{order.get(found.order, f'a differential of order {found.order}')} of {words}"
     return f"{words} [{found.dimension}]" if found.dimension else words
+
+
+def kinds_differ(left: Found, right: Found) -> bool:
+    """Return whether two parts of one unit are different quantities; shares, such as R and T, do add."""
+    return bool(left.dimension and left.kind and right.kind and left.kind != right.kind)
 
 
 def kind_difference(left: Found, right: Found) -> str:
@@ -61,15 +67,15 @@ def kind_difference(left: Found, right: Found) -> str:
 
 
 def equation_clash(
-    left: Found, right: Found, differentials: Sequence[tuple[str, str]]
+    left: Found, right: Found, below_left: Sequence[str], below_right: Sequence[str]
 ) -> tuple[str, str, str] | None:
     """Return code, expectation and hint where the two sides differ, or None where they agree.
 
     Parameters
     ----------
     left, right : Found
-    differentials : sequence of (name, kind)
-        The differentials in the equation.
+    below_left, below_right : sequence of str
+        The differentials of quantities that stand below a fraction bar on either side.
     """
     if left.dimension is None or right.dimension is None:
         return None
@@ -79,8 +85,12 @@ def equation_clash(
     if left.dimension != right.dimension:
         return "unit", "the same unit on both sides", _missing(left.dimension / right.dimension, order)
     if order:
-        return "order", "differentials of the same order on both sides", _order_hint(order, differentials)
-    if left.kind and right.kind and left.kind != right.kind:
+        return (
+            "order",
+            "differentials of the same order on both sides",
+            _order_hint(order, below_left, below_right),
+        )
+    if kinds_differ(left, right):
         return "kind", "the same quantity on both sides", kind_difference(left, right)
     return None
 
@@ -96,12 +106,8 @@ def _missing(ratio: Dimension, order: Fraction) -> str:
     return f"a factor in {ratio} is missing on the right"
 
 
-def _order_hint(order: Fraction, differentials: Sequence[tuple[str, str]]) -> str:
-    side, count = ("right", order) if order > 0 else ("left", -order)
-    hint = "a differential is" if count == 1 else f"differentials of order {count} are"
-    text = f"{hint} missing on the {side}, or one too many stands below a fraction bar there"
-    finite = [name for name, kind in differentials if kind and name.startswith("d")]
-    if finite:
-        names = " or ".join(f"{name[1:]} for {name}" for name in finite)
-        text += f" (perhaps {names})"
-    return text
+def _order_hint(order: Fraction, below_left: Sequence[str], below_right: Sequence[str]) -> str:
+    short, long, below = ("right", "left", below_right) if order > 0 else ("left", "right", below_left)
+    count = "a differential is" if abs(order) == 1 else f"differentials of order {abs(order)} are"
+    meant = [f"{name.removeprefix('d')}, not {name}, is meant below the fraction bar" for name in below]
+    return f"{count} missing on the {short}, or " + (" or ".join(meant) or f"too many stand on the {long}")

@@ -1,4 +1,4 @@
-"""Notation: what the symbols of a formula mean: their quantity, their unit, and whether they are differentials."""
+"""Notation: what the symbols of a formula mean: quantity, unit, and whether they are differentials."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from radiokit.facts.errors import ParameterError
 from radiokit.facts.quantities import quantity as find_quantity
 from radiokit.physics.relations.dimension import NUMBER, Dimension
 
-__all__ = ["HALF", "SR", "Meaning", "Notation"]
+__all__ = ["HALF", "SR", "Meaning", "Notation", "greek", "latex_name"]
 
 SR = sympy.Symbol("Ω_0", positive=True)
 """The unit solid angle, 1 sr, written out wherever a number becomes a solid angle: Ω = Ω₀ A/r²."""
@@ -22,16 +22,15 @@ SR = sympy.Symbol("Ω_0", positive=True)
 HALF = Fraction(1, 2)
 """The order of a side of a two-dimensional element: dω = Ω₀ sinθ dθ dφ is one differential of solid angle."""
 
-_GREEK = dict(
-    zip(
-        "αβγδεζηθικλμνξπρστυφχψωΓΔΘΛΞΠΣΦΨΩ",
-        (
-            "alpha beta gamma delta varepsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau "
-            "upsilon varphi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega"
-        ).split(),
-        strict=True,
-    )
-)
+_NOUNS = {"m": "length", "m²": "area", "s": "time", "sr": "solid angle"}
+_PREPOSITIONS = ("at", "between", "from", "in", "of", "that", "which")
+
+_LETTERS = "αβγδεζηθικλμνξπρστυφχψωΓΔΘΛΞΠΣΦΨΩ"
+_COMMANDS = """
+    alpha beta gamma delta varepsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon
+    varphi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega
+"""
+_GREEK = dict(zip(_LETTERS, _COMMANDS.split(), strict=True))
 
 
 @dataclass(frozen=True)
@@ -60,7 +59,7 @@ class Meaning:
 
 
 class Notation:
-    """The symbols of a formula. Each method adds one and returns it, a SymPy symbol or function.
+    r"""The symbols of a formula. Each method adds one and returns it, a SymPy symbol or function.
 
     Symbols are positive unless assumptions say otherwise. ``within`` is the range from which random
     values are drawn where a formula is tried in numbers.
@@ -68,7 +67,7 @@ class Notation:
     >>> n = Notation()
     >>> E, theta = n.quantity("E", "irradiance"), n.angle("θ")
     >>> print(n.meaning(E).dimension, n.latex(E * sympy.cos(theta)))
-    W/m² E \\cos{\\left(\\theta \\right)}
+    W/m² E \cos{\left(\theta \right)}
     """
 
     def __init__(self) -> None:
@@ -87,7 +86,7 @@ class Notation:
         within: tuple[float, float] | None = None,
         **assumptions: bool,
     ) -> Any:
-        """Add a radiometric quantity, ``kind`` as ``radiokit.quantity`` takes it; ``of`` makes it a function."""
+        """Add a quantity, ``kind`` as ``radiokit.quantity`` takes it; ``of`` makes it a function."""
         found = find_quantity(kind)
         return self._add(name, found.unit, found.english, words, order, of, within, assumptions)
 
@@ -108,12 +107,12 @@ class Notation:
 
     def angle(self, name: str, words: str = "", within: tuple[float, float] = (0.1, 1.4), **more: Any) -> Any:
         """Add a plane angle [rad]; a direction's functions are cosθ and sinθ."""
-        return self.symbol(name, "rad", words, within=within, **more)
+        return self.symbol(name, "rad", f"angle {words}".strip(), within=within, **more)
 
     def differential(
         self, name: str, unit: str, words: str = "", *, kind: str = "", order: int | Fraction = 1
     ) -> Any:
-        """Add a differential, such as dω in sr, dA in m^2, dt in s; a side of an element has ``order=HALF``."""
+        """Add a differential: dω in sr, dA in m^2, dt in s; a side of an element has ``order=HALF``."""
         return self._add(name, unit, kind, words, order, (), None, {})
 
     def _add(
@@ -155,7 +154,7 @@ class Notation:
         atoms = {a for a in sympy.preorder_traversal(expression) if isinstance(a, sympy.Symbol)}
         names = {symbol: latex_name(symbol.name) for symbol in atoms}
         text = str(sympy.latex(expression, symbol_names=names))
-        return "".join(_greek(letter) for letter in text)
+        return "".join(greek(letter) for letter in text)
 
     def __getstate__(self) -> dict[str, Any]:
         return {"meanings": self.meanings, "ranges": self.ranges}
@@ -164,26 +163,29 @@ class Notation:
         """Return one line for a list of symbols, such as ``"E: irradiance [W/m²]"``."""
         meaning = self.meaning(symbol)
         words = ", ".join(text for text in (meaning.kind, meaning.words) if text)
+        if not meaning.kind and meaning.words.split(" ")[0] in _PREPOSITIONS:
+            words = f"{_NOUNS.get(str(meaning.dimension), 'value')} {meaning.words}"
         unit = f" [{meaning.dimension}]" if meaning.dimension != NUMBER else ""
         return f"{symbol}: {words or 'a number'}{unit}"
 
 
 def latex_name(name: str) -> str:
-    """Return a symbol's name as LaTeX.
+    r"""Return a symbol's name as LaTeX.
 
     >>> print(latex_name("dω_i"), latex_name("d2Φ"), latex_name("L_λ"))
-    \\mathrm{d}\\omega_{i} \\mathrm{d}^{2}\\Phi L_{\\lambda}
+    \mathrm{d}\omega_{i} \mathrm{d}^{2}\Phi L_{\lambda}
     """
     head, *subscripts = name.split("_")
     found = re.fullmatch(r"d(\d?)(\w+)", head)
     if found and len(head) > 1:
         power = f"^{{{found[1]}}}" if found[1] else ""
-        head = rf"\mathrm{{d}}{power}" + "".join(map(_greek, found[2])).strip()
+        head = rf"\mathrm{{d}}{power}" + "".join(map(greek, found[2])).strip()
     else:
-        head = "".join(map(_greek, head)).strip()
-    below = ",".join("".join(map(_greek, part)).strip() for part in subscripts)
+        head = "".join(map(greek, head)).strip()
+    below = ",".join("".join(map(greek, part)).strip() for part in subscripts)
     return f"{head}_{{{below}}}" if below else head
 
 
-def _greek(letter: str) -> str:
+def greek(letter: str) -> str:
+    """Return a Greek letter's command, with a space behind it, and any other letter as it is."""
     return f"\\{_GREEK[letter]} " if letter in _GREEK else letter

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import sympy
 
 from radiokit.facts.verdict import Outcome
+from radiokit.physics.relations.notation import greek
 
 if TYPE_CHECKING:
     from radiokit.physics.relations.derivation import Derivation
@@ -14,7 +15,18 @@ if TYPE_CHECKING:
 __all__ = ["aligned", "markdown", "plain"]
 
 _MARKS = {Outcome.HOLDS: "✓", Outcome.VIOLATED: "✗", Outcome.INCONCLUSIVE: "?"}
-_ESCAPED = str.maketrans({c: rf"\{c}" for c in "%_&#$"} | {"{": r"\{", "}": r"\}"})
+_ESCAPED = {c: rf"\{c}" for c in "%_&#${}"}
+_IN_MATHS = {
+    "∫": r"\int ",
+    "√": r"\surd ",
+    "≤": r"\le ",
+    "→": r"\to ",
+    "·": r"\cdot ",
+    "×": r"\times ",
+    "−": "-",
+    **{sign: f"^{digit}" for sign, digit in zip("²³⁴", "234", strict=True)},
+    **{sign: f"_{digit}" for sign, digit in zip("₀₁₂", "012", strict=True)},
+}
 
 
 def aligned(derivation: Derivation) -> str:
@@ -24,10 +36,28 @@ def aligned(derivation: Derivation) -> str:
         relation, latex = step.relation, derivation.notation.latex
         sign = {"==": "=", "<=": r"\le", ">=": r"\ge"}.get(relation.rel_op, relation.rel_op)
         left = "" if relation.lhs == last else latex(relation.lhs)
-        lines.append(rf"{left} &{sign} {latex(relation.rhs)} && \text{{{step.why.translate(_ESCAPED)}}}")
+        lines.append(rf"{left} &{sign} {latex(relation.rhs)} && \text{{{latex_text(step.why)}}}")
         last = relation.lhs
     body = " \\\\\n".join(lines)
     return f"\\begin{{aligned}}\n{body}\n\\end{{aligned}}"
+
+
+def latex_text(text: str) -> str:
+    r"""Return plain text as LaTeX's text mode has it: Greek letters and signs become mathematics.
+
+    >>> print(latex_text("μ = cosθ, 50 %"))
+    $\mu$ = cos$\theta$, 50 \%
+    """
+    parts = [
+        _ESCAPED.get(letter) or (f"${maths.strip()}$" if (maths := maths_of(letter)) else letter)
+        for letter in text
+    ]
+    return "".join(parts).replace("$$", " ")
+
+
+def maths_of(letter: str) -> str:
+    """Return the LaTeX command of a Greek letter or a sign, or an empty string."""
+    return _IN_MATHS.get(letter, "") or (greek(letter) if greek(letter) != letter else "")
 
 
 def _how(derivation: Derivation, index: int) -> str:

@@ -1,4 +1,4 @@
-"""Verify: each step of a derivation proved by SymPy within its time, or tried at 50 digits, and dimension-checked."""
+"""Verify: each step of a derivation checked for dimensions, and proved by SymPy or tried at 50 digits."""
 
 from __future__ import annotations
 
@@ -193,7 +193,7 @@ def _prepared(step: Step, left: Any, right: Any) -> tuple[Any, Any]:
 
 
 def _pulled_back(integral: Any, new: Any, old: Any, original: Any) -> Any:
-    """Return an integral over ``new`` as one over the variable of ``original``, of which ``old`` is a function."""
+    """Return an integral over ``new`` as one over the variable of ``original`` that ``old`` is made of."""
     for limits in (lim for part in original.atoms(sympy.Integral) for lim in part.limits):
         variable, low, high = limits
         if old.has(variable):
@@ -259,8 +259,9 @@ def _proved_order(relation: Any, left: Any, right: Any) -> str:
 
 
 def _merged(expression: Any) -> Any:
-    """Return a sum in which integrals over the same range are one, likewise sums, and drop out if their terms do."""
-    total, collected = sympy.Integer(0), {}
+    """Return a sum whose integrals, or sums, over the same range are one, and drop out if that is 0."""
+    total: Any = sympy.Integer(0)
+    collected: dict[Any, Any] = {}
     for term in sympy.Add.make_args(sympy.expand(expression)):
         coefficient, rest = term.as_independent(sympy.Integral, sympy.Sum, as_Add=False)
         if isinstance(rest, (sympy.Integral, sympy.Sum)):

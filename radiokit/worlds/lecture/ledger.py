@@ -149,6 +149,19 @@ class Ledger:
             raise UnknownNameError("line of the lecture", key, names)
         return names[key]
 
+    def only(self, verdict: str) -> Ledger:
+        """Return the lines with this verdict.
+
+        Raises
+        ------
+        ParameterError
+            When there is no such verdict.
+        """
+        words = [str(word) for word in Word]
+        if verdict not in words:
+            raise ParameterError("verdict", verdict, f"one of {', '.join(words)}")
+        return Ledger(tuple(claim for claim in self.claims if str(claim.verdict) == verdict))
+
     @property
     def ok(self) -> bool:
         """True when every check says what the reading says."""
@@ -216,11 +229,8 @@ def lecture_claims(*, slide: int | str | None = None, verdict: str | None = None
     ...     print(claim.entry.printed, "->", claim.entry.corrected)
     dE(p, \\omega_i) = L_i(p, \\omega_i) \\cos \\theta_i -> dE(p, \\omega_i) = L_i(p, \\omega_i) \\cos \\theta_i d\\omega_i
     """
-    words = [str(word) for word in Word]
-    if verdict is not None and verdict not in words:
-        raise ParameterError("verdict", verdict, f"one of {', '.join(words)}")
-    claims = tuple(map(Claim, _chosen(slide)))
-    return Ledger(tuple(claim for claim in claims if verdict is None or str(claim.verdict) == verdict))
+    found = Ledger(tuple(map(Claim, _chosen(slide))))
+    return found if verdict is None else found.only(verdict)
 
 
 def entries() -> tuple[Entry, ...]:

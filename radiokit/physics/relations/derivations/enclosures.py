@@ -100,7 +100,7 @@ def _integrating_sphere() -> Derivation:
             premise(
                 arriving,
                 rho * flux / area + rho * (1 - ports) * arriving,
-                "first reflection, spread evenly (sphere-view-factor); then that of the wall without its ports",
+                "first reflection, spread evenly (sphere-view-factor), and that of the wall without ports",
                 "balance",
             ),
             premise(light, arriving / (pi * SR), "what arrives at a port leaves through it, evenly"),

@@ -1,4 +1,4 @@
-"""Extended sources: the irradiance from a disk, a sphere, a sky, a rectangle, a polygon, an infinite plane."""
+"""Extended sources: the irradiance from a disk, a sphere, a sky, a rectangle, a polygon, a plane."""
 
 from __future__ import annotations
 
@@ -204,14 +204,14 @@ def _polygon() -> Derivation:
     gamma = n.symbol(
         "c", "1", "normal of the receiver times the outward normal of an edge's sector", of=(j,), real=True
     )
-    r, t = n.symbol("r", "1", "radius in a sector"), n.angle("τ", "angle in a sector")
+    r, t = n.symbol("r", "1", "radius in a sector"), n.angle("τ", "in a sector")
     sector = n.symbol("A", "1", "area of an edge's sector", of=(j,))
     cap = n.symbol("P", "1", "projected area of the spherical polygon", real=True)
     light, arriving = n.quantity("L", "radiance", "of the polygon"), n.quantity("E", "irradiance")
     return Derivation(
         name="irradiance-from-polygon",
         title="Lambert's formula for polygons",
-        statement="E = −(L/2) Σ Θ_j Γ_j·n over the edges, Γ_j the outward normals of the sectors to the edges.",
+        statement="E = −(L/2) Σ Θ_j Γ_j·n over the edges, Γ_j outward normals of their sectors.",
         assumptions=(_UNIFORM, "the polygon is wholly above the receiver's horizon"),
         notation=n,
         steps=(

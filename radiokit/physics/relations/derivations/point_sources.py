@@ -20,7 +20,7 @@ def _isotropic() -> Derivation:
     return Derivation(
         name="isotropic-flux",
         title="The flux of an isotropic source",
-        statement="Φ = 4π I (4π in sr), for a source of the same intensity in all directions, and only for it.",
+        statement="Φ = 4π I (4π in sr), where the intensity is the same in all directions, and only there.",
         assumptions=("I does not depend on direction",),
         notation=n,
         steps=(

@@ -116,7 +116,7 @@ def _triangle() -> Derivation:
     n = Notation()
     excess = n.angle("E", "the spherical excess, in radians", within=(0.1, 1.0))
     a, b = n.angle("a", "side of the spherical triangle"), n.angle("b", "side of the spherical triangle")
-    A, B, C = (n.angle(name, "angle of the spherical triangle") for name in "ABC")
+    A, B, C = (n.angle(name, "of the spherical triangle") for name in "ABC")
     total = n.angle("Σ", "half the sum of A and B", within=(0.3, 1.2))
     omega = n.symbol("Ω", "sr", "of the triangle")
     triple = n.symbol("D", "1", "(v₁ × v₂)·v₃ of the unit vectors to the corners")
