@@ -72,7 +72,7 @@ def validate(
     figures: Annotated[Path, typer.Option(help="Folder of the work-precision diagram.")] = Path("figures"),
     no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw nothing.")] = False,
 ) -> None:
-    """Check every model, every closed-form case by every method that applies, every derivation, and the lecture."""
+    """Check every model, every case by every method that applies, every derivation, and the lecture."""
     from radiokit.faces.validate import validate as run
     from radiokit.faces.workers import available_workers, open_executor
 

@@ -15,9 +15,13 @@ __all__ = ["lecture"]
 
 def lecture(
     name: Annotated[str | None, typer.Argument(help="One line; without it, a table of all.")] = None,
-    slide: Annotated[str | None, typer.Option(help="Only this slide: its number, or a part of its title.")] = None,
+    slide: Annotated[
+        str | None, typer.Option(help="Only this slide: its number, or a part of its title.")
+    ] = None,
     verdict: Annotated[str | None, typer.Option(help="Only 'holds', 'holds only if' or 'misprint'.")] = None,
-    details: Annotated[bool, typer.Option("--details", help="Print each line with its reading and evidence.")] = False,
+    details: Annotated[
+        bool, typer.Option("--details", help="Print each line with its reading and evidence.")
+    ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Show the lecture's formulas and statements, each with the verdict that its checks come to.

@@ -1,4 +1,4 @@
-"""Validate: the main job. Derivations, the lecture, every model before every judge, every case by every method."""
+"""Validate: the main job: derivations, the lecture, every model before the judges, every case."""
 
 from __future__ import annotations
 

@@ -2,4 +2,6 @@
 
 import lazy_loader as _lazy
 
-__getattr__, __dir__, _ = _lazy.attach(__name__, ["fresnel", "integrating_sphere", "relations", "view_factor"])
+__getattr__, __dir__, _ = _lazy.attach(
+    __name__, ["fresnel", "integrating_sphere", "relations", "view_factor"]
+)

@@ -153,8 +153,14 @@ def _kind(name: str, value: Any, found: Any, given: Given, wanted: Quantity | No
         if found.dimensionality == kind.dimensionality:
             return kind
     units = " or ".join(kind.unit for kind in allowed)
-    owners = [quantity(each).english for each in list_quantities() if quantity(each).dimensionality == found.dimensionality]
-    hint = f" ({found.units:~P} is the unit of {' and '.join(owners)})" if owners and not found.unitless else ""
+    owners = [
+        quantity(each).english
+        for each in list_quantities()
+        if quantity(each).dimensionality == found.dimensionality
+    ]
+    hint = (
+        f" ({found.units:~P} is the unit of {' and '.join(owners)})" if owners and not found.unitless else ""
+    )
     raise ParameterError(name, Shown(found), f"in {units}{hint}")
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from radiokit.facts.errors import ParameterError, RadiokitError, UnknownNameError
+from radiokit.facts.errors import RadiokitError, UnknownNameError
 from radiokit.facts.quantities import Quantity, quantity
 from radiokit.facts.tagged import Tagged
 from radiokit.facts.units import parse
@@ -61,7 +61,8 @@ class Related:
         shown = f"{self.value:.6g}" if not getattr(self.value.magnitude, "ndim", 0) else str(self.value)
         state = {None: "holds if", True: "holds:", False: "does not hold:"}[self.condition_holds]
         words = self.condition if not self.fails else f"{self.fails} ({self.condition})"
-        return f"{shown}\n  by {self.relation.name}: {self.formula}\n  {state} {words}\n  derivation: {self.derivation}"
+        return f"{shown}\n  by {self.relation.name}: {self.formula}\n  {state} {words}\n  derivation: "
+        f"{self.derivation}"
 
     def _repr_html_(self) -> str:
         return f"<pre>{escape(str(self))}</pre>"
@@ -171,28 +172,34 @@ def _choose(
     if len(fitting) > 1:
         ways = "; ".join(f"by={each.name!r}: {each.formula}, {each.condition}" for each in fitting)
         raise RadiokitError(
-            f"{_count(len(fitting))} relations lead from {_list(values, 'and')} to {_a(wanted.english)}: choose one. {ways}",
+            f"{_count(len(fitting))} relations lead from {_list(values, 'and')} to {_a(wanted.english)}: "
+            f"choose one. {ways}",
             relations=[each.name for each in fitting],
         )
     return fitting[0]
 
 
 def _check_system(wanted: Quantity, kinds: Mapping[str, Quantity], crossing: bool) -> None:
-    """Refuse watts for lumens: what is given must be of the target's system, or of the other with an efficacy."""
+    """Refuse watts for lumens: givens must be of the target's system, or of the other with an efficacy."""
     for name, kind in kinds.items():
         if not kind.twin:
             continue
         others = [each for each in kinds.values() if each.twin and each.kind != kind.kind]
         if others:
             raise RadiokitError(
-                f"{kind.english} [{kind.unit}] and {others[0].english} [{others[0].unit}] do not go together: "
+                f"{kind.english} [{kind.unit}] and {others[0].english} [{others[0].unit}] do not go "
+                f"together: "
                 "one is radiometric, the other photometric"
             )
         if wanted.twin and (kind.kind == wanted.kind) == crossing:
             if crossing:
-                raise RadiokitError(f"{name} is given as {kind.english}, which is {wanted.kind} already: no luminous efficacy is needed")
+                raise RadiokitError(
+                    f"{name} is given as {kind.english}, which is {wanted.kind} already: no luminous "
+                    f"efficacy is needed"
+                )
             raise RadiokitError(
-                f"{_a(kind.english)} [{kind.unit}] gives {_a(wanted.twin.replace('_', ' '))}, not {_a(wanted.english)}: "
+                f"{_a(kind.english)} [{kind.unit}] gives {_a(wanted.twin.replace('_', ' '))}, not "
+                f"{_a(wanted.english)}: "
                 f"ask for {wanted.twin!r}, or turn it by its luminous_efficacy first"
             )
 
@@ -219,7 +226,9 @@ def _complaint(wanted: Quantity, known: Sequence[Relation], values: Mapping[str,
         verb = "does" if len(values) == 1 else "do"
         return f"{_list(values, 'and')} {verb} not lead to {_a(wanted.english)}; {_ways(known)}"
     alike = [each for each in known if far(each) == far(best)]
-    missing = list(dict.fromkeys(_list(_missing(each, values), "and") for each in alike if _missing(each, values)))
+    missing = list(
+        dict.fromkeys(_list(_missing(each, values), "and") for each in alike if _missing(each, values))
+    )
     source = " and ".join(_a(_words(name)) for name in used[best.name])
     parts = []
     if missing:

@@ -1,1 +1,1 @@
-"""Lecture: what the lecture on light as energy prints, slide by slide, and the check that decides each line."""
+"""Lecture: what the lecture on light as energy prints, slide by slide, and what decides each line."""

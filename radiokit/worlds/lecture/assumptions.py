@@ -20,7 +20,8 @@ ENTRIES = (
     Entry(
         name="no-observer",
         slide=14,
-        printed="В отличие от колориметрии (и фотометрии), радиометрия не учитывает особенностей человеческого "
+        printed="В отличие от колориметрии (и фотометрии), радиометрия не учитывает особенностей "
+        "человеческого "
         "восприятия",
         sentence="Радиометрия – наука об измерении электромагнитного излучения",
         english="A watt of red is a watt like one of green; in lumens they differ.",
@@ -31,13 +32,15 @@ ENTRIES = (
     Entry(
         name="linearity",
         slide=16,
-        printed="Суммарный эффект двух входных сигналов всегда равен сумме эффектов каждого сигнала по отдельности",
+        printed="Суммарный эффект двух входных сигналов всегда равен сумме эффектов каждого сигнала по "
+        "отдельности",
         sentence="Линейность",
         english="Two lights together do what each does alone, added up.",
         russian="Действие двух источников вместе равно сумме их действий порознь.",
         checks=(Experiment(two_lamps, {"power": 2}),),
         condition="the material answers in proportion to the light (no saturation, no two-photon absorption)",
-        condition_ru="отклик материала пропорционален облучённости (нет насыщения и двухфотонного поглощения)",
+        condition_ru="отклик материала пропорционален облучённости (нет насыщения и двухфотонного "
+        "поглощения)",
         amended=(Experiment(two_lamps, {"power": 1}), Derived("reflection-integral")),
         derivation="reflection-integral",
         case="lambert-under-three-lights",
@@ -71,7 +74,8 @@ ENTRIES = (
         slide=16,
         printed="Поведение света на одной частоте не зависит от поведения на другой",
         sentence="Отсутствие флюоресценции и фосфоресценции",
-        english="Light of one wavelength leaves as light of that wavelength: a reflectance a wavelength is enough.",
+        english="Light of one wavelength leaves as light of that wavelength: a reflectance a wavelength is "
+        "enough.",
         russian="Длина волны при отражении не меняется: достаточно коэффициента отражения для каждой из них.",
         checks=(Experiment(fluorescent, {"moved": 0.3}),),
         condition="the matrix from wavelength to wavelength is diagonal (no fluorescence)",

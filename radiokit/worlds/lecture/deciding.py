@@ -1,4 +1,4 @@
-"""Deciding: the kinds of checks by which a line of the lecture is judged, and how they say what they found."""
+"""Deciding: the kinds of checks that judge a line of the lecture, and how they say what they found."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def found(claim: str, value: float, expected: float, within: float, message: str
 
 @dataclass(frozen=True)
 class Formula:
-    """The dimension checker on the printed formula; ``symbols`` say what they mean where the lecture's do not.
+    """The dimension checker on the printed formula.
 
     Parameters
     ----------

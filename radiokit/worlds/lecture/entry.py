@@ -79,7 +79,9 @@ class Entry:
         if not 1 <= self.slide <= len(TITLES):
             raise ParameterError("slide", self.slide, f"from 1 to {len(TITLES)}")
         if bool(self.condition or self.corrected) != bool(self.amended):
-            raise ParameterError("amended", self.amended, "given with a condition or a correction, and only then")
+            raise ParameterError(
+                "amended", self.amended, "given with a condition or a correction, and only then"
+            )
         if bool(self.condition) != bool(self.condition_ru) or (self.condition and self.corrected):
             raise ParameterError("condition", self.condition, "in both languages, and without a correction")
 

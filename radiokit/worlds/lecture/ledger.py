@@ -39,7 +39,7 @@ class Claim:
 
     @cached_property
     def amended(self) -> Verdict | None:
-        """What is found on the line with its condition, or on the corrected one; None where it has neither."""
+        """What is found on the line with its condition, or on the corrected one; None without either."""
         if not self.entry.amended:
             return None
         return _judged(self.entry.amended, self.entry.corrected or self.entry.printed)
@@ -105,7 +105,9 @@ class Claim:
             f"  found: {self.found.message}",
         ]
         if self.amended is not None:
-            lines.append(f"  {'corrected' if entry.corrected else 'with the condition'}: {self.amended.message}")
+            lines.append(
+                f"  {'corrected' if entry.corrected else 'with the condition'}: {self.amended.message}"
+            )
         related = [("derivation", entry.derivation), ("case", entry.case)]
         return "\n".join(lines + [f"  {what}: {name}" for what, name in related if name])
 
@@ -115,10 +117,8 @@ class Claim:
     def to_json(self) -> dict[str, Any]:
         """Return the line and its verdict as JSON-ready data."""
         entry = self.entry
-        texts = (
-            "name", "slide", "title", "printed", "sentence", "english", "russian", "condition", "condition_ru",
-            "corrected", "derivation", "case",
-        )  # fmt: skip
+        texts: tuple[str, ...] = ("name", "slide", "title", "printed", "sentence", "english", "russian")
+        texts += ("condition", "condition_ru", "corrected", "derivation", "case")
         return {
             **{name: getattr(entry, name) for name in texts},
             "verdict": str(self.verdict),
@@ -197,7 +197,9 @@ class Ledger:
     def _repr_html_(self) -> str:
         head = "".join(f"<th>{text}</th>" for text in ("slide", "line", "printed", "verdict", "decided by"))
         body = "".join(
-            "<tr>" + "".join(f'<td style="text-align:left">{escape(str(cell))}</td>' for cell in row) + "</tr>"
+            "<tr>"
+            + "".join(f'<td style="text-align:left">{escape(str(cell))}</td>' for cell in row)
+            + "</tr>"
             for row in self.rows()
         )
         return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
@@ -208,7 +210,7 @@ class Ledger:
 
 
 def lecture_claims(*, slide: int | str | None = None, verdict: str | None = None) -> Ledger:
-    """Return the lecture's formulas and statements, slide by slide, each with a verdict.
+    r"""Return the lecture's formulas and statements, slide by slide, each with a verdict.
 
     Parameters
     ----------
@@ -225,9 +227,9 @@ def lecture_claims(*, slide: int | str | None = None, verdict: str | None = None
 
     Source: the lecture «Свет как энергия. Радиометрия. BRDF» (Ignatenko, 2009).
 
-    >>> for claim in lecture_claims(slide=38, verdict="misprint"):
-    ...     print(claim.entry.printed, "->", claim.entry.corrected)
-    dE(p, \\omega_i) = L_i(p, \\omega_i) \\cos \\theta_i -> dE(p, \\omega_i) = L_i(p, \\omega_i) \\cos \\theta_i d\\omega_i
+    >>> (claim,) = lecture_claims(slide=38, verdict="misprint")
+    >>> print(claim.entry.corrected)
+    dE(p, \omega_i) = L_i(p, \omega_i) \cos \theta_i d\omega_i
     """
     found = Ledger(tuple(map(Claim, _chosen(slide))))
     return found if verdict is None else found.only(verdict)

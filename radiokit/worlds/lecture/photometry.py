@@ -15,7 +15,11 @@ ENTRIES = (
         printed="Световой поток - (люмен – ватт)",
         english="Luminous flux, in lumens, is the twin of radiant flux, in watts.",
         russian="Световой поток (лм) — фотометрический аналог потока излучения (Вт).",
-        checks=(Term("световой поток", "luminous flux"), Unit("luminous_flux", "лм"), Unit("radiant_flux", "Вт")),
+        checks=(
+            Term("световой поток", "luminous flux"),
+            Unit("luminous_flux", "лм"),
+            Unit("radiant_flux", "Вт"),
+        ),
     ),
     Entry(
         name="lumen-is-no-watt",

@@ -1,4 +1,4 @@
-"""Printed: reads the LaTeX of a slide as it is printed into SymPy, each symbol with the meaning it has there."""
+"""Printed: reads the LaTeX of a slide into SymPy, each symbol with the meaning that it has there."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class Reading:
 
 
 def read(latex: str, symbols: Mapping[str, str] | None = None) -> Reading:
-    """Return a printed formula in SymPy.
+    r"""Return a printed formula in SymPy.
 
     Directions and places in parentheses after a symbol are no factors; d before a symbol makes a
     differential, and ∫ takes one of them.
@@ -76,7 +76,7 @@ def read(latex: str, symbols: Mapping[str, str] | None = None) -> Reading:
     ParameterError
         When the formula cannot be read, or nothing says what a symbol means.
 
-    >>> reading = read(r"dE(p, \\omega_i) = L_i(p, \\omega_i) \\cos \\theta_i")
+    >>> reading = read(r"dE(p, \omega_i) = L_i(p, \omega_i) \cos \theta_i")
     >>> print(*reading.sides, sep=" = ")
     dE = L_i*cos(θ_i)
     """
@@ -84,9 +84,9 @@ def read(latex: str, symbols: Mapping[str, str] | None = None) -> Reading:
 
 
 def clashes(reading: Reading) -> tuple[Clash, ...]:
-    """Return where units, kinds or orders of differentials clash; of ∝, only the orders count.
+    r"""Return where units, kinds or orders of differentials clash; of ∝, only the orders count.
 
-    >>> print(clashes(read(r"dE = L \\cos\\theta"))[0].hint)
+    >>> print(clashes(read(r"dE = L \cos\theta"))[0].hint)
     a solid angle dω is missing on the right
     """
     found: list[Clash] = []
@@ -107,7 +107,9 @@ def _proportional(left: Any, right: Any, notation: Notation) -> list[Clash]:
     first, second = check_dimensions(left, notation), check_dimensions(right, notation)
     found = [*first.clashes, *second.clashes]
     if not found and first.order != second.order:
-        shown = f"the left side is a differential of order {first.order}, the right side of order {second.order}"
+        shown = (
+            f"the left side is a differential of order {first.order}, the right side of order {second.order}"
+        )
         found.append(Clash("order", f"{left} ∝ {right}", shown, "differentials of the same order"))
     return found
 
@@ -131,7 +133,9 @@ class _Reader:
     def take(self, wanted: str = "") -> str:
         token = self.next
         if not token or (wanted and token != wanted):
-            raise ParameterError("latex", self.latex, f"complete: {wanted or 'more'!r} is expected, not {token!r}")
+            raise ParameterError(
+                "latex", self.latex, f"complete: {wanted or 'more'!r} is expected, not {token!r}"
+            )
         self.place += 1
         return token
 
@@ -163,7 +167,9 @@ class _Reader:
                 factors.append(self.integral() if self.next == r"\int" else self.discrete())
             elif not self.next or self.next in (*_RELATIONS, "+", "-", ")", "}", ","):
                 if not factors:
-                    raise ParameterError("latex", self.latex, f"complete: nothing stands before {self.next!r}")
+                    raise ParameterError(
+                        "latex", self.latex, f"complete: nothing stands before {self.next!r}"
+                    )
                 return sympy.Mul(*factors)
             else:
                 factors.append(self.factor())

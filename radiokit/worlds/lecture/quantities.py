@@ -52,12 +52,28 @@ def _plain(unit: str) -> str:
 
 
 ENTRIES = (
-    _term("term-energy", "Световая энергия (radiant energy)", "световая энергия", "radiant energy", "энергия излучения"),
-    _term("term-flux", "Световой поток (radiant flux)", "световой поток", "radiant flux", "поток излучения"),
-    _term("term-intensity", "Энергетическая сила света (intensity)", "энергетическая сила света", "intensity"),
-    _term("term-irradiance", "Энергетическая освещенность (irradiance)", "энергетическая освещенность", "irradiance"),
     _term(
-        "term-exitance", "Энергетическая светимость (radiant exitance)", "энергетическая светимость", "radiant exitance"
+        "term-energy",
+        "Световая энергия (radiant energy)",
+        "световая энергия",
+        "radiant energy",
+        "энергия излучения",
+    ),
+    _term("term-flux", "Световой поток (radiant flux)", "световой поток", "radiant flux", "поток излучения"),
+    _term(
+        "term-intensity", "Энергетическая сила света (intensity)", "энергетическая сила света", "intensity"
+    ),
+    _term(
+        "term-irradiance",
+        "Энергетическая освещенность (irradiance)",
+        "энергетическая освещенность",
+        "irradiance",
+    ),
+    _term(
+        "term-exitance",
+        "Энергетическая светимость (radiant exitance)",
+        "энергетическая светимость",
+        "radiant exitance",
     ),
     _term("term-radiance", "Энергетическая яркость (radiance)", "энергетическая яркость", "radiance"),
     _term("term-radiation", "= излучение", "излучение", "radiance", "энергетическая яркость"),
@@ -81,10 +97,16 @@ ENTRIES = (
         sentence="Поставить источник света",
         english="The flux on a plate is what it gains in heat per time, Φ = C dT/dt.",
         russian="Поток, падающий на площадку, равен скорости роста её теплоты, Φ = C dT/dt.",
-        checks=(Formula({"C": "J/K", "T": "K"}, r"\Phi = C \frac{dT}{dt}"), Experiment(calorimeter, {"losses": 0.5})),
+        checks=(
+            Formula({"C": "J/K", "T": "K"}, r"\Phi = C \frac{dT}{dt}"),
+            Experiment(calorimeter, {"losses": 0.5}),
+        ),
         condition="the plate absorbs all light and loses no heat meanwhile",
         condition_ru="площадка поглощает весь свет и не теряет теплоты за время опыта",
-        amended=(Formula({"C": "J/K", "T": "K"}, r"\Phi = C \frac{dT}{dt}"), Experiment(calorimeter, {"losses": 0.0})),
+        amended=(
+            Formula({"C": "J/K", "T": "K"}, r"\Phi = C \frac{dT}{dt}"),
+            Experiment(calorimeter, {"losses": 0.0}),
+        ),
     ),
     Entry(
         name="whole-flux",
@@ -99,7 +121,8 @@ ENTRIES = (
     Entry(
         name="solid-angle",
         slide=23,
-        printed="Измеряется отношением площади части сферы с центром в вершине угла, которая вырезается этим телесным "
+        printed="Измеряется отношением площади части сферы с центром в вершине угла, которая вырезается "
+        "этим телесным "
         "углом, к квадрату радиуса сферы",
         english="A solid angle is the area that it cuts from a sphere over the square of the radius, in sr.",
         russian="Телесный угол — отношение вырезаемой им площади сферы к квадрату радиуса, в стерадианах.",
@@ -113,7 +136,8 @@ ENTRIES = (
     Entry(
         name="steradian",
         slide=23,
-        printed="Стерадиан равен телесному углу, вырезающему из сферы единичного радиуса поверхность с площадью в 1 "
+        printed="Стерадиан равен телесному углу, вырезающему из сферы единичного радиуса поверхность с "
+        "площадью в 1 "
         "квадратную единицу",
         english="The cone that cuts 1 m² from a sphere of radius 1 m is 1 sr.",
         russian="Конус, вырезающий 1 м² из сферы радиуса 1 м, есть 1 ср.",
@@ -183,7 +207,11 @@ ENTRIES = (
         printed=r"Во многих моделях освещения встречается $\cos$ в качестве множителя",
         english="A tilted surface receives E = E₀ cosθ.",
         russian="На наклонной поверхности облучённость E = E₀ cosθ.",
-        checks=(Formula(latex=r"E = E_0 \cos\theta"), Experiment(cosine_law), Derived("irradiance-from-intensity")),
+        checks=(
+            Formula(latex=r"E = E_0 \cos\theta"),
+            Experiment(cosine_law),
+            Derived("irradiance-from-intensity"),
+        ),
         derivation="irradiance-from-intensity",
         case="lambert-under-sun-at-60deg",
     ),

@@ -1,4 +1,4 @@
-"""Radiance: slides 29 to 32, its definition, its unit, its properties, and the other quantities in terms of it."""
+"""Radiance: slides 29 to 32, its definition, unit and properties, and how it follows from the others."""
 
 from __future__ import annotations
 
@@ -14,15 +14,21 @@ ENTRIES = (
         slide=29,
         printed="Источник не точечный",
         english="A point of finite intensity has no radiance: as the source shrinks, L grows without bound.",
-        russian="У точечного источника конечной силы нет яркости: при сжатии источника L растёт неограниченно.",
-        checks=(Formula({"r": "m"}, r"I = L \pi r^2"), Experiment(point_source), Derived("irradiance-from-sphere")),
+        russian="У точечного источника конечной силы нет яркости: при сжатии источника L растёт "
+        "неограниченно.",
+        checks=(
+            Formula({"r": "m"}, r"I = L \pi r^2"),
+            Experiment(point_source),
+            Derived("irradiance-from-sphere"),
+        ),
         derivation="irradiance-from-sphere",
         case="lambert-under-sphere-at-100m",
     ),
     Entry(
         name="radiance-in-words",
         slide=29,
-        printed="Плотность потока, попадающего на площадку единичной площади, проходя через единичный телесный угол",
+        printed="Плотность потока, попадающего на площадку единичной площади, проходя через единичный "
+        "телесный угол",
         english="Radiance is the flux per area and per solid angle.",
         russian="Яркость — поток на единицу площади и телесного угла.",
         checks=(Experiment(patch, {"theta_deg": 60.0}),),
@@ -92,9 +98,11 @@ ENTRIES = (
     Entry(
         name="radiance-from-others",
         slide=32,
-        printed=r"L = \frac{dI}{dS \cos \theta} = \frac{dE}{d\omega \cos \theta} = \frac{dM}{d\omega \cos \theta}",
+        printed=r"L = \frac{dI}{dS \cos \theta} = \frac{dE}{d\omega \cos \theta} = \frac{dM}{d\omega \cos "
+        r"\theta}",
         sentence="Сила света, Освещенность, Светимость",
-        english="Radiance by intensity per projected area, and by irradiance or exitance per projected solid angle.",
+        english="Radiance by intensity per projected area, and by irradiance or exitance per projected "
+        "solid angle.",
         russian="Яркость через силу излучения, облучённость и светимость.",
         checks=(Formula(), Derived("radiance-from-others")),
         derivation="radiance-from-others",

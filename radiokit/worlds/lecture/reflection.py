@@ -22,7 +22,8 @@ ENTRIES = (
     Entry(
         name="kinds-of-scattering",
         slide=35,
-        printed="Отражение: Зеркальное, Диффузное, Смешанное, Ретро-зеркальное, Блеск; Преломление (пропускание): "
+        printed="Отражение: Зеркальное, Диффузное, Смешанное, Ретро-зеркальное, Блеск; Преломление "
+        "(пропускание): "
         "Зеркальное, Диффузное, Смешанное",
         english="Specular, diffuse, mixed, retroreflecting and glossy surfaces, and what lets light pass.",
         russian="Зеркальное, диффузное, смешанное, световозвращающее и глянцевое отражение; пропускание.",
@@ -31,7 +32,8 @@ ENTRIES = (
     Entry(
         name="energy-towards-the-viewer",
         slide=36,
-        printed="Задача – рассчитать количество энергии, излучаемой в сторону наблюдателя при заданном входящем "
+        printed="Задача – рассчитать количество энергии, излучаемой в сторону наблюдателя при заданном "
+        "входящем "
         "излучении",
         english="What is sought for a viewer is no energy but a radiance, L_o = ∫ f L_i cosθ_i dω_i.",
         russian="Для наблюдателя ищут не энергию, а яркость, L_o = ∫ f L_i cosθ_i dω_i.",
@@ -43,11 +45,13 @@ ENTRIES = (
     Entry(
         name="light-of-one-point",
         slide=37,
-        printed="Предполагается, что исходящее излучение зависит только от входящего излучения для данной точки!",
+        printed="Предполагается, что исходящее излучение зависит только от входящего излучения для данной "
+        "точки!",
         english="Light leaves where it arrives.",
         russian="Свет выходит в той же точке, куда пришёл.",
         checks=(Experiment(elsewhere, {"scatter_mm": 2.0}),),
-        condition="light wanders less under the surface than the eye resolves there (wax and skin need a BSSRDF)",
+        condition="light wanders less under the surface than the eye resolves there (wax and skin need a "
+        "BSSRDF)",
         condition_ru="путь света под поверхностью меньше разрешаемого (для воска и кожи нужна ФОР)",
         amended=(Experiment(elsewhere, {"scatter_mm": 0.01}), Derived("bssrdf-limit")),
         derivation="bssrdf-limit",
@@ -176,7 +180,11 @@ ENTRIES = (
         checks=(Formula(), Experiment(share_passed, {"name": "conductor", "eta": 0.2, "k": 3.0})),
         condition="nothing is absorbed; in general Φ_i = Φ_r + Φ_t + Φ_a",
         condition_ru="поглощения нет; в общем случае Φ_i = Φ_r + Φ_t + Φ_a",
-        amended=(Formula(), Experiment(share_passed, {"name": "dielectric", "eta": 1.5}), Derived("flux-balance")),
+        amended=(
+            Formula(),
+            Experiment(share_passed, {"name": "dielectric", "eta": 1.5}),
+            Derived("flux-balance"),
+        ),
         derivation="flux-balance",
     ),
 )

@@ -58,11 +58,13 @@ ENTRIES = (
     Entry(
         name="brdf-again",
         slide=46,
-        printed=r"f_r(p, \omega_o, \omega_i) = \frac{dL_o(p, \omega_o)}{dL_i(p, \omega_i) \cos \theta_i d\omega_i}",
+        printed=r"f_r(p, \omega_o, \omega_i) = \frac{dL_o(p, \omega_o)}{dL_i(p, \omega_i) \cos \theta_i "
+        r"d\omega_i}",
         english="The definition of the BRDF, again with the differential of what arrives.",
         russian="Определение ДФО, снова с дифференциалом падающей яркости.",
         checks=(Formula(),),
-        corrected=r"f_r(p, \omega_o, \omega_i) = \frac{dL_o(p, \omega_o)}{L_i(p, \omega_i) \cos \theta_i d\omega_i}",
+        corrected=r"f_r(p, \omega_o, \omega_i) = \frac{dL_o(p, \omega_o)}{L_i(p, \omega_i) \cos \theta_i "
+        r"d\omega_i}",
         amended=(Formula(), Derived("brdf-definition")),
         derivation="brdf-definition",
     ),
@@ -72,7 +74,12 @@ ENTRIES = (
         printed=r"L(p, \omega_o) = \int_{\Omega} f_r(p, \omega_o, \omega_i) L_i \cos \theta_i d\omega_i",
         english="The reflection integral.",
         russian="Интеграл отражения.",
-        checks=(Formula(), Experiment(furnace), Derived("reflection-integral"), Case("phong-10-under-sphere")),
+        checks=(
+            Formula(),
+            Experiment(furnace),
+            Derived("reflection-integral"),
+            Case("phong-10-under-sphere"),
+        ),
         derivation="reflection-integral",
         case="phong-10-under-sphere",
     ),
@@ -83,8 +90,10 @@ ENTRIES = (
         english="A sum over n lamps in the place of the integral.",
         russian="Сумма по n источникам вместо интеграла.",
         checks=(Formula(), Experiment(sum_of_lamps, {"factor": "radiance"})),
-        condition="L_i^j is no radiance but the irradiance on a surface that faces the lamp (or carries Δω_j)",
-        condition_ru="L_i^j — не яркость, а облучённость площадки, обращённой к источнику (или стоит множитель Δω_j)",
+        condition="L_i^j is no radiance but the irradiance on a surface that faces the lamp (or carries "
+        "Δω_j)",
+        condition_ru="L_i^j — не яркость, а облучённость площадки, обращённой к источнику (или стоит "
+        "множитель Δω_j)",
         amended=(
             Formula({"L_i_j": "irradiance"}),
             Experiment(sum_of_lamps, {"factor": "irradiance"}),
@@ -142,7 +151,8 @@ ENTRIES = (
         name="bssrdf",
         slide=48,
         printed="Задачу решает ФОР (Функция Объемного Рассеивания) – обобщение модели ДФР",
-        english="A BSSRDF S, in 1/(m² sr), is more general: its integral over the places where light enters is f.",
+        english="A BSSRDF S, in 1/(m² sr), is more general: its integral over the places where light "
+        "enters is f.",
         russian="ФОР S, в 1/(м²·ср), общее: её интеграл по точкам входа света даёт ДФО.",
         checks=(Formula(_BSSRDF, r"f_r = \int S dA"), Derived("bssrdf-limit")),
         derivation="bssrdf-limit",

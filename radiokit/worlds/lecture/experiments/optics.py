@@ -28,7 +28,9 @@ __all__ = [
 _PLANCK, _LIGHT, _ELECTRON = 6.62607015e-34, 299_792_458.0, 1.602176634e-19
 
 
-def photon_energy(metal_work: float = 2.28, strong: float = 700.0, weak: float = 400.0) -> tuple[Verdict, ...]:
+def photon_energy(
+    metal_work: float = 2.28, strong: float = 700.0, weak: float = 400.0
+) -> tuple[Verdict, ...]:
     """Sodium (2.28 eV): no electron however strong the red light, one for each of the few violet quanta."""
     energies = [_PLANCK * _LIGHT / (1e-9 * wavelength) / _ELECTRON for wavelength in (strong, weak)]
     return tuple(
@@ -52,12 +54,13 @@ def channel_means(bounces: int = 2) -> Verdict:
         spectral / channel,
         2.0 ** (bounces - 1),
         1e-12,
-        f"after {bounces} reflections {spectral:g} of the light is left; one number a channel gives {channel:g}",
+        f"after {bounces} reflections {spectral:g} of the light is left; one number a channel gives "
+        f"{channel:g}",
     )
 
 
 def edge_of_a_shadow(clearance: float) -> tuple[Verdict, ...]:
-    """Light at a distance from a straight edge's geometric shadow, in units of √(λz/2), by Fresnel's integrals."""
+    """Light so many √(λz/2) from the edge of a geometric shadow, by Fresnel's integrals."""
     from scipy.special import fresnel as integrals
 
     verdicts = []
@@ -89,8 +92,16 @@ def slit() -> tuple[Verdict, ...]:
     narrow, scaled, wide = pattern(5e-6, 5e-7), pattern(1e-5, 1e-6), pattern(1e-5, 5e-7)
     same, other = float(np.max(np.abs(narrow - scaled))), float(np.max(np.abs(narrow - wide)))
     return (
-        found("the same ratio, the same pattern", same, 0.0, 1e-12, f"width and λ doubled: they differ by {same:.1g}"),
-        found("another ratio, another pattern", other > 0.1, True, 0, f"only the width doubled: by {other:.2g}"),
+        found(
+            "the same ratio, the same pattern",
+            same,
+            0.0,
+            1e-12,
+            f"width and λ doubled: they differ by {same:.1g}",
+        ),
+        found(
+            "another ratio, another pattern", other > 0.1, True, 0, f"only the width doubled: by {other:.2g}"
+        ),
     )
 
 
@@ -111,7 +122,8 @@ def reflection_by_least_time() -> tuple[Verdict, ...]:
             math.degrees(leaving),
             math.degrees(arriving),
             1e-4,
-            f"the shortest way arrives at {math.degrees(arriving):.5f}° and leaves at {math.degrees(leaving):.5f}°",
+            f"the shortest way arrives at {math.degrees(arriving):.5f}° and leaves at "
+            f"{math.degrees(leaving):.5f}°",
         ),
         found("the mirror's lobe lies there", math.atan2(-wi[0], wi[2]), arriving, 1e-6, "so does the model"),
     )
@@ -133,7 +145,8 @@ def refraction_by_least_time(eta: float = 1.5) -> tuple[Verdict, ...]:
             eta * math.sin(inside),
             math.sin(outside),
             1e-6,
-            f"the fastest way has n sinθ = {math.sin(outside):.7f} above and {eta * math.sin(inside):.7f} below",
+            f"the fastest way has n sinθ = {math.sin(outside):.7f} above and {eta * math.sin(inside):.7f} "
+            f"below",
         ),
         found("the model refracts there", math.atan2(below[0], -below[2]), inside, 1e-6, "so does the model"),
     )
@@ -150,7 +163,13 @@ def reversed_path(eta: float = 1.5) -> tuple[Verdict, ...]:
     returned = [lobe.wi[0] for lobe in bsdf("dielectric", eta=eta).delta_lobes(wi)]
     gap = min(float(np.linalg.norm(w - (0.6, 0.0, 0.8))) for w in returned)
     return (
-        found("one share both ways", worst, 0.0, 1e-12, f"the shares reflected there and back differ by {worst:.1g}"),
+        found(
+            "one share both ways",
+            worst,
+            0.0,
+            1e-12,
+            f"the shares reflected there and back differ by {worst:.1g}",
+        ),
         found("one path both ways", gap, 0.0, 1e-12, f"the path back ends {gap:.1g} from where it began"),
     )
 
@@ -170,12 +189,14 @@ def polarised_and_not(theta_deg: float, eta: float = 1.5) -> tuple[float, float]
 
 
 def transverse() -> tuple[Verdict, ...]:
-    """A wave that swings across its way has two polarisations; at Brewster's angle glass reflects only one."""
+    """A wave that swings across its way has two polarisations: at Brewster's angle glass reflects one."""
     brewster = math.degrees(math.atan(1.5))
     s, p = polarised_and_not(brewster)
     mean = float(fresnel.dielectric(math.cos(math.radians(brewster)), 1.5))
     return (
-        found("p vanishes", p, 0.0, 1e-15, f"at {brewster:.2f}° glass reflects {s:.4f} of s and {p:.1g} of p"),
+        found(
+            "p vanishes", p, 0.0, 1e-15, f"at {brewster:.2f}° glass reflects {s:.4f} of s and {p:.1g} of p"
+        ),
         found("s does not", s > 0.1, True, 0, "so the light that is reflected is polarised"),
         found("radiokit's value is the mean", mean, 0.5 * (s + p), 1e-15, f"the mean is {mean:.4f}"),
     )
@@ -190,5 +211,6 @@ def two_reflections(theta_deg: float) -> Verdict:
         without / truth,
         1.0,
         1e-9,
-        f"two reflections at {theta_deg:.4g}° leave {truth:.5f}; without polarisation it would be {without:.5f}",
+        f"two reflections at {theta_deg:.4g}° leave {truth:.5f}; without polarisation it would be "
+        f"{without:.5f}",
     )

@@ -61,7 +61,9 @@ def cap_over_square() -> tuple[Verdict, ...]:
         disk = emitter("disk", center=(0, 0, 1), radius=math.tan(half), normal=_DOWN, radiance=1.0)
         cap = 4 * math.pi * radius**2 * math.sin(0.5 * half) ** 2
         value = float(solid_angle(disk).value)
-        message = f"r = {radius:g} m: {cap:.4f} m² / r² = {cap / radius**2:.6f}, radiokit finds {value:.6f} sr"
+        message = (
+            f"r = {radius:g} m: {cap:.4f} m² / r² = {cap / radius**2:.6f}, radiokit finds {value:.6f} sr"
+        )
         verdicts.append(found("Ω = A/r²", cap / radius**2, value, 1e-12, message))
     return tuple(verdicts)
 
@@ -71,7 +73,9 @@ def one_steradian() -> Verdict:
     half = 2 * math.asin(math.sqrt(1 / (4 * math.pi)))
     disk = emitter("disk", center=(0, 0, 1), radius=math.tan(half), normal=_DOWN, radiance=1.0)
     value = float(solid_angle(disk).value)
-    return found("it is 1 sr", value, 1.0, 1e-12, f"a cone of half-angle {math.degrees(half):.2f}° has {value:.9f} sr")
+    return found(
+        "it is 1 sr", value, 1.0, 1e-12, f"a cone of half-angle {math.degrees(half):.2f}° has {value:.9f} sr"
+    )
 
 
 def irradiance_and_exitance() -> tuple[Verdict, ...]:
@@ -93,7 +97,8 @@ def equal_units(left: str, right: str) -> Verdict:
     """One unit in terms of others."""
     first, second = Q(left), Q(right)
     if first.dimensionality != second.dimensionality:
-        message = f"{left} and {right} have different dimensions: {first.to_base_units()} and {second.to_base_units()}"
+        message = f"{left} and {right} have different dimensions: {first.to_base_units()} and "
+        f"{second.to_base_units()}"
         return found(f"{left} = {right}", False, True, 0, message)
     ratio = float((first / second).to_base_units().magnitude)
     return found(f"{left} = {right}", ratio, 1.0, 1e-12, f"{left} = {ratio:.12g} × {right}")
@@ -104,11 +109,13 @@ def cosine_law(theta_deg: float = 60.0) -> Verdict:
     theta = math.radians(theta_deg)
     sun = emitter("directional", direction=(math.sin(theta), 0, math.cos(theta)), irradiance=1.0)
     value = float(irradiance(sun).value)
-    return found("E = E₀ cosθ", value, math.cos(theta), 1e-12, f"at {theta_deg:g}° arrives {value:.6f} of 1 W/m²")
+    return found(
+        "E = E₀ cosθ", value, math.cos(theta), 1e-12, f"at {theta_deg:g}° arrives {value:.6f} of 1 W/m²"
+    )
 
 
 def point_source() -> tuple[Verdict, ...]:
-    """Spheres of one intensity, 1 W/sr, at 1 m: smaller and smaller, the same irradiance, ever more radiance."""
+    """Spheres of 1 W/sr at 1 m, smaller and smaller: the same irradiance, ever more radiance."""
     verdicts = []
     for radius in (0.1, 0.001):
         radiance = 1 / (math.pi * radius**2)
@@ -121,7 +128,9 @@ def point_source() -> tuple[Verdict, ...]:
 def patch(theta_deg: float) -> Verdict:
     """A Lambertian patch of radiance 1: its flux per solid angle and per unit of its own area."""
     theta = math.radians(theta_deg)
-    disk = emitter("disk", center=(math.sin(theta), 0, math.cos(theta)), radius=1e-4, normal=_DOWN, radiance=1.0)
+    disk = emitter(
+        "disk", center=(math.sin(theta), 0, math.cos(theta)), radius=1e-4, normal=_DOWN, radiance=1.0
+    )
     arriving = irradiance(disk, normal=(math.sin(theta), 0, math.cos(theta)))
     per_area = float(arriving.value) / (math.pi * 1e-8)
     message = f"seen at {theta_deg:g}°, flux per solid angle and area is {per_area:.6f} of the radiance"
@@ -149,7 +158,8 @@ def pixel(fills: bool, twin: str = "") -> Verdict:
         signals.append(float(irradiance(disk).value))
     ratio = signals[1] / signals[0]
     what = "an object that fills the pixel" if fills else "a star"
-    message = f"ten times as far, {what} gives {ratio:.4g} of the signal, though its {twin or 'radiance'} is the same"
+    message = f"ten times as far, {what} gives {ratio:.4g} of the signal, though its {twin or 'radiance'} "
+    "is the same"
     return found("the signal tells the radiance", ratio, 1.0, 1e-9, message)
 
 
@@ -176,5 +186,11 @@ def observer() -> tuple[Verdict, ...]:
     green, red = luminous(555.0), luminous(680.0)
     return (
         found("1 W of green is 683 lm", green, 683.0, 14.0, f"1 W at 555 nm is {green:.0f} lm"),
-        found("of red far less", red < 0.05 * green, True, 0, f"1 W at 680 nm is {red:.0f} lm, and just as many watts"),
+        found(
+            "of red far less",
+            red < 0.05 * green,
+            True,
+            0,
+            f"1 W at 680 nm is {red:.0f} lm, and just as many watts",
+        ),
     )
