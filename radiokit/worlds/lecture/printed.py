@@ -34,7 +34,7 @@ SYMBOLS: Mapping[str, str] = {
 
 _GREEK = {
     "omega": "ω", "theta": "θ", "Phi": "Φ", "phi": "φ", "rho": "ρ", "alpha": "α", "lambda": "λ", "Omega": "Ω",
-    "Delta": "Δ", "eta": "η", "delta": "δ",
+    "Delta": "Δ", "eta": "η", "delta": "δ", "tau": "τ",
 }  # fmt: skip
 _RELATIONS = {"=": "=", r"\leq": "≤", r"\le": "≤", r"\geq": "≥", r"\ge": "≥", r"\propto": "∝"}
 _SPACES = re.compile(r"\\[ ,;!]|\\quad|\$|\s+")
