@@ -11,9 +11,16 @@ from radiokit.facts.source import Source
 from radiokit.facts.verdict import Evidence, Outcome, Verdict, Witness
 from radiokit.physics.relations.notation import Notation
 from radiokit.physics.relations.steps import Step
-from radiokit.physics.relations.verify import NUMERICALLY, Finding, verify
+from radiokit.physics.relations.verify import NUMERICALLY, Finding, How, verify
 
 __all__ = ["Derivation", "Finding"]
+
+_EVIDENCE: dict[How, Evidence] = {
+    "proved": Evidence.PROVED,
+    NUMERICALLY: Evidence.MEASURED,
+    "undecided": Evidence.MEASURED,
+    "refuted": Evidence.REFUTED,
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,6 +94,24 @@ class Derivation:
         return (
             sum(finding.how == "proved" for finding in self.findings),
             sum(not step.premise for step in self.steps),
+        )
+
+    @property
+    def verdicts(self) -> tuple[Verdict, ...]:
+        """A verdict for each step that is verified; premises have none, unless their units clash."""
+        pairs = zip(self.steps, self.findings, strict=False)
+        return tuple(
+            Verdict(
+                check=f"{self.name}, step {i}",
+                claim=str(step.relation),
+                outcome=finding.outcome,
+                evidence=_EVIDENCE[finding.how],
+                message=finding.message,
+                witness=Witness(values={"step": i}) if finding.outcome is Outcome.VIOLATED else None,
+                seconds=finding.seconds,
+            )
+            for i, (step, finding) in enumerate(pairs, start=1)
+            if finding.how != "premise"
         )
 
     @property

@@ -23,6 +23,7 @@ HALF = Fraction(1, 2)
 """The order of a side of a two-dimensional element: dω = Ω₀ sinθ dθ dφ is one differential of solid angle."""
 
 _NOUNS = {"m": "length", "m²": "area", "s": "time", "sr": "solid angle"}
+_ORDERS = {HALF: "side", Fraction(2): "second differential", Fraction(3): "third differential"}
 _PREPOSITIONS = ("at", "between", "from", "in", "of", "that", "which")
 
 _LETTERS = "αβγδεζηθικλμνξπρστυφχψωΓΔΘΛΞΠΣΦΨΩ"
@@ -156,17 +157,20 @@ class Notation:
         text = str(sympy.latex(expression, symbol_names=names))
         return "".join(greek(letter) for letter in text)
 
-    def __getstate__(self) -> dict[str, Any]:
-        return {"meanings": self.meanings, "ranges": self.ranges}
-
     def describe(self, symbol: Any) -> str:
         """Return one line for a list of symbols, such as ``"E: irradiance [W/m²]"``."""
         meaning = self.meaning(symbol)
-        words = ", ".join(text for text in (meaning.kind, meaning.words) if text)
-        if not meaning.kind and meaning.words.split(" ")[0] in _PREPOSITIONS:
-            words = f"{_NOUNS.get(str(meaning.dimension), 'value')} {meaning.words}"
+        noun = meaning.kind or _NOUNS.get(str(meaning.dimension), "number")
+        if meaning.kind:
+            words = f"{noun}, {meaning.words}" if meaning.words else noun
+        elif not meaning.words or meaning.words.split(" ")[0] in _PREPOSITIONS:
+            words = f"{noun} {meaning.words}".strip()
+        else:
+            words = meaning.words
+        if meaning.order:
+            words = f"{_ORDERS.get(meaning.order, 'differential')} of {words}"
         unit = f" [{meaning.dimension}]" if meaning.dimension != NUMBER else ""
-        return f"{symbol}: {words or 'a number'}{unit}"
+        return f"{symbol}: {words}{unit}"
 
 
 def latex_name(name: str) -> str:

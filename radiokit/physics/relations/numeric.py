@@ -12,7 +12,7 @@ from sympy.core.function import AppliedUndef
 
 from radiokit.measure.twin import compiled, working_precision
 
-__all__ = ["DIGITS", "compared", "points", "with_trial_functions"]
+__all__ = ["DIGITS", "compared", "evaluated"]
 
 DIGITS = 50
 _RANGE = (0.2, 1.3)
@@ -27,7 +27,7 @@ def points(
     """Yield random values for the free symbols, the same ones for the same ``name``."""
     rng = np.random.default_rng(int.from_bytes(hashlib.sha256(name.encode()).digest()[:8], "big"))
     symbols = sorted(expression.free_symbols, key=str)
-    for _ in range(count):
+    for _ in range(count if symbols else 1):
         yield {
             symbol: int(rng.integers(1, 9))
             if symbol.is_integer
@@ -50,6 +50,36 @@ def with_trial_functions(expression: Any, name: str) -> Any:
     return expression.replace(lambda part: isinstance(part, AppliedUndef), trial)
 
 
+def evaluated(
+    left: Any,
+    right: Any,
+    name: str,
+    ranges: Mapping[Any, tuple[float, float]],
+    count: int,
+    digits: int = DIGITS,
+) -> list[tuple[Any, Any, dict[str, float]]] | None:
+    """Return the values of two expressions at random points, and where; None where there are none."""
+    import mpmath
+
+    parts = (with_trial_functions(side, name).doit(integrals=False) for side in (left, right))
+    pair = sympy.Tuple(*parts)
+    if pair.has(*_UNTRIABLE):
+        return None
+    found = []
+    for values in points(pair, name, ranges, count):
+        symbols = tuple(values)
+        with working_precision(digits + _GUARD):
+            numbers = [mpmath.mpf(value) for value in values.values()]
+            try:
+                first, second = (mpmath.mpmathify(compiled(part, symbols)(*numbers)) for part in pair)
+            except (ArithmeticError, AttributeError, NameError, TypeError, ValueError, KeyError):
+                return None
+            if not mpmath.isfinite(abs(first) + abs(second)):
+                return None
+        found.append((first, second, {str(symbol): value for symbol, value in values.items()}))
+    return found
+
+
 def compared(
     left: Any,
     right: Any,
@@ -62,27 +92,14 @@ def compared(
 
     None means that they cannot be evaluated there.
     """
-    import mpmath
-
-    pair = sympy.Tuple(
-        with_trial_functions(left, name).doit(integrals=False), with_trial_functions(right, name)
-    )
-    pair = sympy.Tuple(pair[0], pair[1].doit(integrals=False))
-    if pair.has(*_UNTRIABLE):
+    found = evaluated(left, right, name, ranges, count, digits)
+    if found is None:
         return None
     worst: tuple[float, dict[str, float]] = (0.0, {})
-    for values in points(pair, name, ranges, count):
-        symbols = tuple(values)
+    for first, second, where in found:
         with working_precision(digits + _GUARD):
-            numbers = [mpmath.mpf(value) for value in values.values()]
-            try:
-                first, second = (mpmath.mpmathify(compiled(part, symbols)(*numbers)) for part in pair)
-            except (ArithmeticError, AttributeError, NameError, TypeError, ValueError, KeyError):
-                return None
             size = abs(first) + abs(second)
-            if not mpmath.isfinite(size):
-                return None
             difference = float(abs(first - second) / size) if size else 0.0
         if difference >= worst[0]:
-            worst = difference, {str(symbol): value for symbol, value in values.items()}
+            worst = difference, where
     return worst

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 import sympy
 
 from radiokit.facts.verdict import Outcome
-from radiokit.physics.relations.notation import greek
+from radiokit.physics.relations.notation import greek, latex_name
 
 if TYPE_CHECKING:
     from radiokit.physics.relations.derivation import Derivation
@@ -45,17 +46,22 @@ def aligned(derivation: Derivation) -> str:
 def latex_text(text: str) -> str:
     r"""Return plain text as LaTeX's text mode has it: Greek letters and signs become mathematics.
 
-    >>> print(latex_text("μ = cosθ, 50 %"))
-    $\mu$ = cos$\theta$, 50 \%
+    >>> print(latex_text("μ = cosθ_i, 50 %"))
+    $\mu$ = cos$\theta_{i}$, 50 \%
     """
     parts = [
-        _ESCAPED.get(letter) or (f"${maths.strip()}$" if (maths := maths_of(letter)) else letter)
-        for letter in text
+        f"${latex_name(piece)}$" if i % 2 else "".join(map(_letter, piece))
+        for i, piece in enumerate(re.split(r"(\w_\w+)", text))
     ]
     return "".join(parts).replace("$$", " ")
 
 
-def maths_of(letter: str) -> str:
+def _letter(letter: str) -> str:
+    maths = _maths(letter).strip()
+    return f"${maths}$" if maths else _ESCAPED.get(letter, letter)
+
+
+def _maths(letter: str) -> str:
     """Return the LaTeX command of a Greek letter or a sign, or an empty string."""
     return _IN_MATHS.get(letter, "") or (greek(letter) if greek(letter) != letter else "")
 

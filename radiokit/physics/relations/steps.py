@@ -43,7 +43,7 @@ class Step:
     using: tuple[str | tuple[str, Any], ...] = ()
     change: Mapping[Any, Any] = field(default_factory=dict)
     antiderivative: tuple[Any, Any] | None = None
-    seconds: float = 20.0
+    seconds: float = 60.0
 
     @property
     def name(self) -> str:

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
 import sympy
-from sympy.core.function import AppliedUndef
 
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.verdict import Outcome
 from radiokit.measure.proof import TimeIsUp, time_limit
 from radiokit.physics.relations.checker import check_dimensions
 from radiokit.physics.relations.notation import Notation
-from radiokit.physics.relations.numeric import DIGITS, compared
+from radiokit.physics.relations.numeric import DIGITS, compared, evaluated
+from radiokit.physics.relations.proving import prepared, proof, sides
 from radiokit.physics.relations.steps import Step
 
 __all__ = ["NUMERICALLY", "Finding", "How", "verify"]
@@ -25,7 +25,16 @@ How = Literal["premise", "proved", "numerically at 50 digits", "refuted", "undec
 NUMERICALLY: How = "numerically at 50 digits"
 
 _AGREE, _DIFFER = 1e-45, 1e-12  # relative, at 50 digits; between them nothing is said
-_POINTS, _ROUGH = 6, 20
+_POINTS, _FEW, _ROUGH = 6, 2, 20  # points; points of a multiple integral; digits that refute
+
+_GIVEN_UP = (
+    ArithmeticError,
+    NotImplementedError,
+    RecursionError,
+    TypeError,
+    ValueError,
+    sympy.PolynomialError,
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,12 +85,12 @@ def _step(name: str, step: Step, earlier: Sequence[Step], notation: Notation) ->
         return Outcome.HOLDS, "premise", "taken as given; units, kinds and differentials agree"
     means = ""
     try:
-        left, right = _sides(step, earlier)
+        left, right = sides(step, earlier)
         with time_limit(step.seconds):
-            means = _proof(step, *_prepared(step, left, right))
+            means = proof(step, *prepared(step, left, right))
     except ParameterError as error:
         return Outcome.VIOLATED, "refuted", str(error)
-    except TimeIsUp:
+    except (TimeIsUp, *_GIVEN_UP):
         pass  # numbers may still decide
     try:
         with time_limit(step.seconds):
@@ -97,195 +106,48 @@ def _with_numbers(
 ) -> tuple[Outcome, How, str]:
     """Try the step in numbers: one point where there is a proof, more where there is none."""
     if not isinstance(step.relation, sympy.Eq):
-        if means:
-            return Outcome.HOLDS, "proved", means
-        return Outcome.INCONCLUSIVE, "undecided", "the sign of the difference is not known"
-    if means and any(_nested(side) for side in (left, right)):
+        return _order_with_numbers(name, step, left, right, notation, means)
+    nested = any(_nested(side) for side in (left, right))
+    if means and nested and step.antiderivative is None:  # which may jump between the bounds
         return Outcome.HOLDS, "proved", means
-    count, digits = (1, _ROUGH) if means else (_POINTS, DIGITS)
-    found = compared(left, right, name, notation.ranges, count, digits)
+    found = compared(left, right, name, notation.ranges, 1, _ROUGH)  # enough to refute
+    points = _FEW if nested else _POINTS
+    if found is not None and not means and found[0] <= _DIFFER:
+        found = compared(left, right, name, notation.ranges, points, DIGITS)
     if found is None:
         if means:
             return Outcome.HOLDS, "proved", means
         return Outcome.INCONCLUSIVE, "undecided", "SymPy finds no proof, and it cannot be evaluated"
     worst, where = found
     if worst > _DIFFER:
-        at = ", ".join(f"{symbol} = {value:.4g}" for symbol, value in where.items())
-        return Outcome.VIOLATED, "refuted", f"the sides differ by {worst:.2g} of their size at {at}"
+        message = f"the sides differ by {worst:.2g} of their size at {_shown(where)}"
+        return Outcome.VIOLATED, "refuted", message
     if means:
         return Outcome.HOLDS, "proved", means
     if worst < _AGREE:
-        return Outcome.HOLDS, NUMERICALLY, f"agreement to {DIGITS} digits at {_POINTS} random points"
+        return Outcome.HOLDS, NUMERICALLY, f"agreement to {DIGITS} digits at {points} random points"
     return Outcome.INCONCLUSIVE, "undecided", f"the sides differ by {worst:.2g} of their size"
+
+
+def _order_with_numbers(
+    name: str, step: Step, left: Any, right: Any, notation: Notation, means: str
+) -> tuple[Outcome, How, str]:
+    """Look for a point where an inequality is false; none is no proof."""
+    greater = isinstance(step.relation, (sympy.Ge, sympy.Gt))
+    for first, second, where in evaluated(left, right, name, notation.ranges, _POINTS, _ROUGH) or ():
+        beyond = float(second - first if greater else first - second)
+        if beyond > _DIFFER * float(abs(first) + abs(second)):
+            return Outcome.VIOLATED, "refuted", f"beyond the limit by {beyond:.2g} at {_shown(where)}"
+    if means:
+        return Outcome.HOLDS, "proved", means
+    return Outcome.INCONCLUSIVE, "undecided", "the sign of the difference is not known"
+
+
+def _shown(where: Mapping[str, float]) -> str:
+    return ", ".join(f"{symbol} = {value:.4g}" for symbol, value in where.items())
 
 
 def _nested(expression: Any) -> bool:
     """Return whether numbers would cost a multiple integral."""
     integrals = expression.atoms(sympy.Integral)
     return any(len(part.limits) > 1 or part.function.has(sympy.Integral) for part in integrals)
-
-
-def _sides(step: Step, earlier: Sequence[Step]) -> tuple[Any, Any]:
-    """Return both sides with what was established put in."""
-    left, right = step.relation.lhs, step.relation.rhs
-    for known in reversed(earlier):
-        if known.relation.lhs == left and isinstance(known.relation, sympy.Eq):
-            left = known.relation.rhs
-            break
-    for use in step.using:
-        label, target = use if isinstance(use, tuple) else (use, None)
-        known = _named(label, earlier)
-        left, right = (put_in(side, known.relation, target) for side in (left, right))
-    return left, right
-
-
-def _named(label: str, earlier: Sequence[Step]) -> Step:
-    for known in reversed(earlier):
-        if known.name == label:
-            return known
-    names = ", ".join(known.name for known in earlier)
-    raise ParameterError("using", label, f"the label of an earlier step ({names})")
-
-
-def put_in(expression: Any, relation: Any, target: Any = None) -> Any:
-    """Return ``expression`` with an equation put in: left side for right, or solved for ``target``.
-
-    A function of symbols, f(x) = ..., is put in for every argument.
-
-    >>> x, y = sympy.symbols("x y")
-    >>> put_in(x**2, sympy.Eq(y, 3 * x), x)
-    y**2/9
-    """
-    old, new = relation.lhs, relation.rhs
-    if target is not None:
-        unknown = sympy.Dummy(positive=target.is_positive)
-        solutions = sympy.solve((old - new).subs(target, unknown), unknown)
-        if len(solutions) != 1 or solutions[0].has(target):
-            raise ParameterError("using", target, f"what {relation} has one solution for")
-        old, new = target, solutions[0]
-    if isinstance(old, AppliedUndef) and all(arg.is_Symbol for arg in old.args):
-
-        def at(part: Any) -> Any:
-            return new.subs(dict(zip(old.args, part.args, strict=True)), simultaneous=True)
-
-        return expression.replace(lambda part: isinstance(part, AppliedUndef) and part.func == old.func, at)
-    if not old.is_Symbol:
-        expression = expression.xreplace({old: new})  # under an integral sign, too
-    return expression.subs(old, new)
-
-
-def _prepared(step: Step, left: Any, right: Any) -> tuple[Any, Any]:
-    for new, old in step.change.items():
-        right = right.replace(
-            lambda part, new=new: isinstance(part, sympy.Integral) and part.variables == [new],
-            lambda part, new=new, old=old: _pulled_back(part, new, old, left),
-        )
-    if step.antiderivative is not None:
-        variable, function = step.antiderivative
-        left, right = (
-            side.replace(
-                lambda part: isinstance(part, sympy.Integral) and part.variables[:1] == [variable],
-                lambda part: _by_antiderivative(part, variable, function),
-            )
-            for side in (left, right)
-        )
-    return left, right
-
-
-def _pulled_back(integral: Any, new: Any, old: Any, original: Any) -> Any:
-    """Return an integral over ``new`` as one over the variable of ``original`` that ``old`` is made of."""
-    for limits in (lim for part in original.atoms(sympy.Integral) for lim in part.limits):
-        variable, low, high = limits
-        if old.has(variable):
-            break
-    else:
-        raise ParameterError("change", old, "in the variable of an integral on the left")
-    _, start, end = integral.limits[0]
-    at_low, at_high = sympy.limit(old, variable, low), sympy.limit(old, variable, high)
-    integrand = integral.function.subs(new, old) * sympy.diff(old, variable)
-    if _is_zero(at_low - start) and _is_zero(at_high - end):
-        return sympy.Integral(integrand, (variable, low, high))
-    if _is_zero(at_low - end) and _is_zero(at_high - start):
-        return sympy.Integral(-integrand, (variable, low, high))
-    raise ParameterError("change", f"{new} from {start} to {end}", f"from {at_low} to {at_high}")
-
-
-def _by_antiderivative(integral: Any, variable: Any, function: Any) -> Any:
-    """Return an integral with its innermost one evaluated, once the antiderivative's slope is proved."""
-    (_, low, high), *rest = integral.limits
-    if not _is_zero(sympy.diff(function, variable) - integral.function):
-        raise ParameterError("antiderivative", function, f"one whose derivative is {integral.function}")
-    value = function.subs(variable, high) - function.subs(variable, low)
-    return sympy.Integral(value, *rest) if rest else value
-
-
-def _proof(step: Step, left: Any, right: Any) -> str:
-    """Return by which means SymPy proves the step, or an empty string."""
-    if not isinstance(step.relation, sympy.Eq):
-        return _proved_order(step.relation, left, right)
-    means = ["substitution"] if step.using else []
-    means += ["change of variable"] if step.change else []
-    means += ["antiderivative"] if step.antiderivative is not None else []
-    difference = left - right
-    if _is_zero(difference):
-        return ", ".join(means) or "algebra"
-    kinds: dict[str, Any] = {
-        "integration": sympy.Integral,
-        "differentiation": sympy.Derivative,
-        "limit": sympy.Limit,
-        "summation": sympy.Sum,
-    }
-    means += [word for word, kind in kinds.items() if difference.has(kind)]
-    attempts: tuple[Callable[[Any], Any], ...] = (_merged, lambda e: _merged(e.doit(integrals=False)), _done)
-    for attempt in attempts:
-        if _is_zero(attempt(difference)):
-            return ", ".join(means) or "algebra"
-    return ""
-
-
-def _done(expression: Any) -> Any:
-    return expression.doit()
-
-
-def _proved_order(relation: Any, left: Any, right: Any) -> str:
-    difference = right - left if isinstance(relation, (sympy.Le, sympy.Lt)) else left - right
-    strict = isinstance(relation, (sympy.Lt, sympy.Gt))
-    forms: tuple[Callable[[Any], Any], ...] = (_done, sympy.factor, sympy.simplify)
-    for form in forms:
-        shown = form(difference)
-        if shown.is_positive or (not strict and shown.is_nonnegative):
-            return "the sign of the difference"
-    return ""
-
-
-def _merged(expression: Any) -> Any:
-    """Return a sum whose integrals, or sums, over the same range are one, and drop out if that is 0."""
-    total: Any = sympy.Integer(0)
-    collected: dict[Any, Any] = {}
-    for term in sympy.Add.make_args(sympy.expand(expression)):
-        coefficient, rest = term.as_independent(sympy.Integral, sympy.Sum, as_Add=False)
-        if isinstance(rest, (sympy.Integral, sympy.Sum)):
-            key = rest.func, rest.limits
-            collected[key] = collected.get(key, 0) + coefficient * rest.function
-        else:
-            total += term
-    for (kind, limits), inner in collected.items():
-        if not _is_zero(inner):
-            total += kind(inner, *limits)
-    return total
-
-
-def _is_zero(expression: Any) -> bool:
-    """Return whether a normal form of SymPy's is 0."""
-    if expression == 0:
-        return True
-    if expression.has(sympy.Integral, sympy.Limit, sympy.Sum, sympy.Derivative):
-        return bool(sympy.expand(expression) == 0)
-    forms: Mapping[str, Callable[[Any], Any]] = {
-        "expand": sympy.expand,
-        "together": lambda e: sympy.expand(sympy.numer(sympy.together(e))),
-        "simplify": sympy.simplify,
-        "trigsimp": lambda e: sympy.trigsimp(sympy.expand(e, trig=True)),
-        "exponentials": lambda e: sympy.simplify(e.rewrite(sympy.exp)),
-    }
-    return any(form(expression) == 0 for form in forms.values())

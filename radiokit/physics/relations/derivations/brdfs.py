@@ -15,6 +15,9 @@ __all__ = ["DERIVATIONS"]
 def _brdf() -> Derivation:
     n = Notation()
     f, theta = n.quantity("f", "bsdf"), n.angle("θ_i", "of incidence")
+    some = n.quantity("E", "irradiance", "from the direction of incidence")
+    answer = n.quantity("Λ", "radiance", "reflected from so much irradiance", of=(some,))
+    times = n.symbol("k", "1", "how often as much")
     arriving, reflected = (
         n.quantity("L_i", "radiance", "that arrives"),
         n.quantity("dL_o", "radiance", order=1),
@@ -24,12 +27,27 @@ def _brdf() -> Derivation:
         name="brdf-definition",
         title="The BRDF, from linearity",
         statement="f = dL_o/dE = dL_o/(L_i cosθ_i dω_i): L_i, not dL_i, stands below.",
-        assumptions=("linearity: twice the light gives twice the reflection",),
+        assumptions=("linearity: k times the light gives k times the reflection",),
         notation=n,
         steps=(
-            premise(reflected, f * dE, "linearity: dL_o is proportional to dE, and f is the factor"),
+            premise(answer(times * some), times * answer(some), "linearity", "linear"),
+            follows(
+                answer(times * some) / (times * some),
+                answer(some) / some,
+                "radiance over irradiance is the same for any irradiance",
+                "linear",
+                label="quotient",
+            ),
+            premise(f, answer(some) / some, "that quotient is the BRDF"),
+            follows(
+                answer(some),
+                f * some,
+                "reflected radiance is proportional to irradiance",
+                ("f", answer(some)),
+            ),
+            premise(reflected, f * dE, "so it is of the irradiance from dω_i"),
             premise(dE, arriving * cos(theta) * dw, "irradiance from dω_i"),
-            follows(f, reflected / dE, "solved for f", ("dL_o", f)),
+            follows(f, reflected / dE, "solved for f", "dL_o", "f"),
             follows(f, reflected / (arriving * cos(theta) * dw), "the irradiance put in", "dE"),
         ),
         source=at(NICODEMUS_1977, "equation 5"),

@@ -122,7 +122,16 @@ def _triangle() -> Derivation:
     triple = n.symbol("D", "1", "(v₁ × v₂)·v₃ of the unit vectors to the corners")
     cosine = n.symbol("k", "1", "cosine of the side opposite to C", real=True, within=(0.1, 0.9))
     ratio = cos((a - b) / 2) / cos((a + b) / 2)
-    p, q = tan(a / 2), tan(b / 2)
+    p, q, t = tan(a / 2), tan(b / 2), tan(C / 2)
+    halves = tuple(
+        step
+        for angle, half in ((a, p), (b, q), (C, t))
+        for step in (
+            follows(sin(angle), 2 * half / (1 + half**2), f"the sine of {angle} by its half"),
+            follows(cos(angle), (1 - half**2) / (1 + half**2), f"the cosine of {angle} by its half"),
+        )
+    )
+    names = tuple(step.name for step in halves)
     return Derivation(
         name="solid-angle-of-triangle",
         title="The solid angle of a triangle",
@@ -140,27 +149,21 @@ def _triangle() -> Derivation:
                 tan(omega / (2 * SR)), tan(total + C / 2 - pi / 2), "half the excess", "Ω", "E", label="t"
             ),
             follows(
-                tan(omega / (2 * SR)),
-                (tan(total) * tan(C / 2) - 1) / (tan(total) + tan(C / 2)),
-                "tangent of a sum, less a right angle",
+                tan(omega / (2 * SR)), (tan(total) * t - 1) / (tan(total) + t), "of a sum, less a right angle"
             ),
+            follows(tan(omega / (2 * SR)), (ratio - 1) / (ratio / t + t), "put in", "Napier"),
+            follows(ratio, (1 + p * q) / (1 - p * q), "cosines of a sum and a difference", label="ratio"),
             follows(
-                tan(omega / (2 * SR)),
-                (ratio - 1) / (ratio / tan(C / 2) + tan(C / 2)),
-                "Napier's analogy put in",
-                "Napier",
+                tan(omega / (2 * SR)), 2 * p * q * t / (1 + t**2 + p * q * (1 - t**2)), "put in", "ratio"
             ),
-            follows(
-                tan(omega / (2 * SR)),
-                p * q * sin(C) / (1 + p * q * cos(C)),
-                "sines and cosines of half angles",
-            ),
+            *halves,
             follows(
                 tan(omega / (2 * SR)),
                 triple / (1 + cos(a) + cos(b) + cosine),
-                "times 4 cos²(a/2) cos²(b/2), above and below",
+                "the half angles once more",
                 "D",
                 "k",
+                *names,
             ),
         ),
         source=at(OOSTEROM, "equation 8"),
