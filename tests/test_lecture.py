@@ -1,4 +1,4 @@
-"""The lecture's ledger: verdicts come from the checks, which find the printed slips and refuse planted ones."""
+"""The lecture's ledger: its verdicts come from the checks, which find printed and planted slips."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ def test_the_checker_finds_the_slip_on_the_printed_formula(name):
 
 
 def test_the_slips_that_no_unit_shows_are_found_by_experiment():
-    """The mirror without a delta, the flux of a lamp that is not isotropic, a grey surface, a lumen of 2 cd."""
+    """A mirror without a delta, a lamp that is not isotropic, a grey surface, a lumen of 2 cd."""
     for name, words in (
         ("mirror-brdf", "radiance 3.2e-08 of 1 is seen"),
         ("flux-of-a-point-source", "a flat Lambertian lamp of 1 W/sr along its axis gives 3.1416 W"),

@@ -12,7 +12,6 @@ import numpy as np
 from radiokit.facts.errors import RadiokitError, UnknownNameError
 from radiokit.facts.quantities import Quantity, quantity
 from radiokit.facts.tagged import Tagged
-from radiokit.facts.units import parse
 from radiokit.physics.relate.givens import GIVENS, read_givens, role_of
 from radiokit.physics.relate.relation import Relation
 from radiokit.physics.relate.table import RELATIONS
@@ -116,12 +115,14 @@ def relate(target: str, *, by: str | None = None, **givens: Any) -> Related:
         When there is no such quantity, given or relation.
 
     >>> found = relate("irradiance", intensity="5 W/sr", distance="2 m", angle_deg=60)
-    >>> print(found.value, found.derivation)
-    0.6250000000000001 W/m² (irradiance) irradiance-from-intensity
+    >>> print(f"{found.value:.4f}", found.derivation)
+    0.6250 W/m² (irradiance) irradiance-from-intensity
     >>> relate("irradiance", intensity="5 W/sr")
     Traceback (most recent call last):
     radiokit.facts.errors.RadiokitError: for an irradiance from an intensity the distance is missing
     """
+    from radiokit.facts.units import parse
+
     wanted = quantity(target)
     role = _role(wanted)
     values, kinds = read_givens(givens)
