@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -21,6 +22,7 @@ from radiokit.facts.verdict import Evidence, Outcome
 from radiokit.physics import fresnel, view_factor
 from radiokit.physics.relations import SR, Derivation, Notation, Step, cache, catalogue, eq, follows, premise
 from radiokit.physics.relations.steps import holds
+from radiokit.physics.relations.verify import verify_step
 
 SOME = ("lambertian-intensity", "reciprocity", "flux-balance")
 
@@ -45,6 +47,19 @@ def test_every_step_is_verified(name):
     for step, finding in zip(found.steps, found.findings, strict=True):
         assert (finding.how == "premise") == step.premise
     json.dumps(found.to_json(), allow_nan=False)
+
+
+@pytest.mark.parametrize("name", rk.list_derivations())
+def test_twice_the_result_is_refuted(name):
+    right = catalogue.unverified(name)
+    *earlier, last = right.steps
+    relation = right.result
+    if isinstance(relation, sympy.Eq):
+        wrong = eq(relation.lhs, 2 * relation.rhs if relation.rhs else sympy.Integer(1))
+    else:
+        wrong = relation.func(200 * relation.lhs, relation.rhs, evaluate=False)
+    outcome, how, message = verify_step(name, replace(last, relation=wrong), earlier, right.notation)
+    assert (outcome, how) == (Outcome.VIOLATED, "refuted"), message
 
 
 def test_enough_is_proved_symbolically():
@@ -109,7 +124,7 @@ def test_a_wrong_step_between_right_ones_is_refuted():
 
 def test_a_change_of_variable_needs_the_right_bounds():
     s = Lambertian()
-    wrong = 2 * pi * SR * s.L * Integral(s.mu, (s.mu, 0, 2))
+    wrong = 2 * pi * SR * s.L * Integral(s.mu, (s.mu, 1, sympy.sqrt(2)))  # of the right value
     found = planted(
         s.definition,
         follows(s.M, 2 * pi * SR * s.L * s.ring, "azimuth"),
@@ -117,13 +132,13 @@ def test_a_change_of_variable_needs_the_right_bounds():
         notation=s.notation,
     )
     assert found.outcome is Outcome.VIOLATED
-    assert "μ from 0 to 2 is not allowed" in found.findings[2].message.replace("'", "")
+    assert "μ from 1 to sqrt(2) is not allowed" in found.findings[2].message.replace("'", "")
 
 
 def test_a_wrong_antiderivative_is_refuted():
     n = Notation()
     a, x, area = n.symbol("a", "m"), n.symbol("x", "m"), n.symbol("A", "m^2")
-    steps = (premise(area, Integral(x, (x, 0, a)), ""), follows(area, a**2, "", antiderivative=(x, x**2)))
+    steps = (premise(area, Integral(x, (x, 0, a)), ""), follows(area, a**2 / 2, "", antiderivative=(x, x**2)))
     found = planted(*steps, notation=n)
     assert found.findings[1].how == "refuted"
     assert "antiderivative = x**2" in found.findings[1].message
