@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import pickle
 from dataclasses import replace
 
 import pytest
@@ -45,6 +46,7 @@ def test_every_check_says_what_the_reading_says(ledger, name):
     assert (claim.found.witness is not None) == (claim.found.outcome is Outcome.VIOLATED)
     assert claim.judgement.outcome is Outcome.HOLDS
     assert claim.judgement.evidence is not Evidence.REFUTED
+    assert pickle.loads(pickle.dumps(claim.judgement)) == claim.judgement
 
 
 def test_the_ledger_is_large_and_goes_by_slides(ledger):
@@ -290,7 +292,7 @@ def test_the_command_lists_filters_and_explains(capsys):
     assert "L_i, not dL_i, is meant" in text
     code, text = run("--slide", "39")
     assert code == 0
-    assert "1 misprint" in text
+    assert "misprint: 1" in text
     assert run("--slide", "99")[0] == 2
 
 

@@ -53,4 +53,4 @@ def _show(found: Any, json: bool, details: bool) -> None:
         write("\n\n".join(map(str, found)))
     else:
         show_table("the lecture", ("slide", "line", "printed", "verdict", "decided by"), found.rows())
-        write(", ".join(f"{count} {word}" for word, count in found.counts().items()))
+        write(", ".join(f"{word}: {count}" for word, count in found.counts().items()))

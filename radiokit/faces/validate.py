@@ -13,7 +13,7 @@ from typing import Any
 from radiokit.checks.claims import claims
 from radiokit.checks.judge import check
 from radiokit.contracts.bsdf import REGISTRY, bsdf
-from radiokit.faces.derive import prove
+from radiokit.faces.proofs import prove
 from radiokit.faces.workers import SerialExecutor
 from radiokit.facts.errors import RadiokitError, UnknownNameError
 from radiokit.facts.jsonable import jsonable
@@ -131,7 +131,7 @@ def everything(
     Raises
     ------
     UnknownNameError
-        When one of ``names`` is neither a model nor a case, nor a derivation, nor "lecture".
+        When one of ``names`` is no model, case or derivation, nor "lecture".
 
     >>> everything(["lambert"])[0][1]
     ('lambert', {'reflectance': 0.5})

@@ -11,7 +11,7 @@ from radiokit.worlds.lecture.experiments.materials import (
     switched_on,
     two_lamps,
 )
-from radiokit.worlds.lecture.experiments.optics import two_reflections
+from radiokit.worlds.lecture.experiments.optics import transverse, two_reflections
 from radiokit.worlds.lecture.experiments.quantities import observer
 
 __all__ = ["ENTRIES"]
@@ -28,6 +28,16 @@ ENTRIES = (
         russian="Ватт красного света — такой же ватт, как и зелёного; в люменах они различны.",
         checks=(Experiment(observer), Derived("luminous-flux")),
         derivation="luminous-flux",
+    ),
+    Entry(
+        name="elements-of-waves",
+        slide=15,
+        printed="Тем не менее, возможно включать элементы волновой оптики",
+        sentence="Основана на излучении как потоке частиц (геометрическая оптика)",
+        english="Fresnel's formulas bring into radiometry what waves do at an interface.",
+        russian="Формулы Френеля вносят в радиометрию поведение волн на границе сред.",
+        checks=(Experiment(transverse), Derived("fresnel-s"), Derived("fresnel-p")),
+        derivation="fresnel-s",
     ),
     Entry(
         name="linearity",

@@ -113,16 +113,17 @@ class Unit:
     def judge(self, printed: str) -> Verdict:
         """Read the unit, and compare its dimension."""
         unit = self.unit or printed
-        claim = f"{unit} is a unit of {quantity(self.quantity).english}"
+        kind = quantity(self.quantity)
+        claim = f"{unit} is a unit of {kind.english}"
         try:
-            quantity(self.quantity)(f"1 {unit}")
+            kind(f"1 {unit}")
         except RadiokitError as error:
             return Verdict(
                 check="unit",
                 claim=claim,
                 outcome=Outcome.VIOLATED,
                 evidence=Evidence.REFUTED,
-                message=error.message,
+                message=f"{error.message}; {kind.english} is in {kind.unit}",
                 witness=Witness(values={"unit": unit, "finding": error.message}),
             )
         return Verdict(
@@ -130,7 +131,7 @@ class Unit:
             claim=claim,
             outcome=Outcome.HOLDS,
             evidence=Evidence.PROVED,
-            message=f"{unit} has the dimension of {Q(quantity(self.quantity).unit).units}",
+            message=f"{unit} has the dimension of {Q(kind.unit).units}",
         )
 
 

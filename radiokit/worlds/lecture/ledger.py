@@ -192,7 +192,7 @@ class Ledger:
 
     def __str__(self) -> str:
         lines = [f"{slide:>2}  {name}: {verdict}" for slide, name, _, verdict, _ in self.rows()]
-        return "\n".join([*lines, ", ".join(f"{count} {word}" for word, count in self.counts().items())])
+        return "\n".join([*lines, ", ".join(f"{word}: {count}" for word, count in self.counts().items())])
 
     def _repr_html_(self) -> str:
         head = "".join(f"<th>{text}</th>" for text in ("slide", "line", "printed", "verdict", "decided by"))

@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from radiokit.worlds.lecture.deciding import Derived, Experiment, Formula, Term, Unit
 from radiokit.worlds.lecture.entry import Entry
-from radiokit.worlds.lecture.experiments.quantities import equal_units, four_pi_lumens, lumen, observer
+from radiokit.worlds.lecture.experiments.quantities import (
+    equal_units,
+    four_pi_lumens,
+    lumen,
+    observer,
+    platinum,
+)
 
 __all__ = ["ENTRIES"]
 
@@ -88,6 +94,14 @@ ENTRIES = (
             Unit("luminous_intensity", "кд"),
             Experiment(equal_units, {"left": "1 cd", "right": "1 lm/sr"}),
         ),
+    ),
+    Entry(
+        name="platinum-standard",
+        slide=33,
+        printed='до платинового эталона была "международная свеча"',
+        english="The candela was 1/60 of what 1 cm² of a black body gives at the freezing point of platinum.",
+        russian="Канделу задавали как 1/60 силы света 1 см² чёрного тела при затвердевании платины.",
+        checks=(Experiment(platinum),),
     ),
     Entry(
         name="lux",

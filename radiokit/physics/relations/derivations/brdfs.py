@@ -6,7 +6,7 @@ from sympy import DiracDelta, Integral, Sum, cos, oo
 
 from radiokit.physics.relations.derivation import Derivation
 from radiokit.physics.relations.notation import SR, Notation
-from radiokit.physics.relations.sources import NICODEMUS_1977, VEACH, at
+from radiokit.physics.relations.sources import NICODEMUS_1977, VEACH
 from radiokit.physics.relations.steps import follows, premise
 
 __all__ = ["DERIVATIONS"]
@@ -50,7 +50,7 @@ def _brdf() -> Derivation:
             follows(f, reflected / dE, "solved for f", "dL_o", "f"),
             follows(f, reflected / (arriving * cos(theta) * dw), "the irradiance put in", "dE"),
         ),
-        source=at(NICODEMUS_1977, "equation 5"),
+        source=NICODEMUS_1977,
         tags=("brdf", "lecture"),
     )
 
@@ -73,7 +73,7 @@ def _unit() -> Derivation:
             premise(number, a / b, "the quotient of the numbers"),
             follows(f, number / SR, "watts and metres cancel, the steradian stays", "L_o", "E", "k"),
         ),
-        source=at(NICODEMUS_1977, "equation 5"),
+        source=NICODEMUS_1977,
         tags=("brdf", "lecture"),
     )
 
@@ -99,7 +99,7 @@ def _reflection() -> Derivation:
             premise(light, Integral(rate(w), (w, 0, all_)), "contributions add"),
             follows(light, Integral(f(w) * arriving(w) * cos(theta(w)), (w, 0, all_)), "put in", "rate"),
         ),
-        source=at(NICODEMUS_1977, "section III"),
+        source=NICODEMUS_1977,
         tags=("brdf", "lecture"),
     )
 
@@ -170,7 +170,7 @@ def _mirror() -> Derivation:
             follows(light, R * arriving(mu_o, phi_o), "the deltas sift: the mirrored radiance", "f"),
             follows(rho, R, "the cosine cancels", "f"),
         ),
-        source=at(NICODEMUS_1977, "perfectly specular reflection"),
+        source=NICODEMUS_1977,
         tags=("brdf", "mirror", "lecture"),
     )
 
@@ -197,7 +197,7 @@ def _bssrdf() -> Derivation:
             premise(S(x, y), f * DiracDelta(x) * DiracDelta(y), "a delta in place", "S"),
             follows(light, f * arriving(0, 0), "the deltas sift: the irradiance at the point itself", "S"),
         ),
-        source=at(NICODEMUS_1977, "equation 1"),
+        source=NICODEMUS_1977,
         tags=("brdf", "bssrdf", "lecture"),
     )
 

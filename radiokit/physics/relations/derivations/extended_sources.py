@@ -241,7 +241,7 @@ def _polygon() -> Derivation:
                 "area",
             ),
         ),
-        source=at(ARVO, "equation 1, after Lambert"),
+        source=at(ARVO, "equation 2, Lambert's formula"),
         tags=("irradiance",),
     )
 

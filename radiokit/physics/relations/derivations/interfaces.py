@@ -144,7 +144,7 @@ def _normal_incidence() -> Derivation:
             premise(t2, S.Zero, "is not bent"),
             follows(R, ((n1 - n2) / (n1 + n2)) ** 2, "both are the same", "R_s", "R_p", "θ_1", "θ_2"),
         ),
-        source=at(BORN_WOLF, "section 1.5.2, equation 23"),
+        source=at(BORN_WOLF, "section 1.5.2"),
         tags=("fresnel",),
     )
 

@@ -33,7 +33,7 @@ def _albedo() -> Derivation:
             follows(rho, Integral(light(w) * cos(theta(w)), (w, 0, all_)) / arriving, "put in", "M"),
             follows(rho, Integral(f(w) * cos(theta(w)), (w, 0, all_)), "E cancels", "reflected"),
         ),
-        source=at(NICODEMUS_1977, "section V"),
+        source=NICODEMUS_1977,
         tags=("albedo", "lecture"),
     )
 
@@ -63,7 +63,7 @@ def _energy() -> Derivation:
             holds(Le(rho, 1, evaluate=False), "no more is reflected than arrives", "Φ_i", label="share"),
             holds(Le(whole, 1, evaluate=False), "the same of the integral", "ρ", "Φ_i"),
         ),
-        source=at(NICODEMUS_1977, "section V"),
+        source=NICODEMUS_1977,
         tags=("energy", "lecture"),
     )
 
@@ -90,7 +90,7 @@ def _reciprocity() -> Derivation:
             follows(there, forth / (light * cos(ti) * wi * cos(to) * wo * dA), "solved", ("d3Φ_io", there)),
             follows(there, back, "the flux back put in", "balance", "d3Φ_oi"),
         ),
-        source=at(NICODEMUS_1977, "section III"),
+        source=NICODEMUS_1977,
         tags=("reciprocity", "lecture"),
     )
 
@@ -121,7 +121,7 @@ def _btdf() -> Derivation:
             follows(there, back * L2 / L1, "the flux back put in", "balance", "d3Φ_21"),
             follows(there / n2**2, back / n1**2, "radiances put in", "f_12", "L_1", "L_2"),
         ),
-        source=at(VEACH, "section 5.2"),
+        source=at(VEACH, "chapter 5"),
         tags=("reciprocity", "refraction", "lecture"),
     )
 
@@ -180,7 +180,7 @@ def _furnace() -> Derivation:
             follows(light, arriving * Integral(f(w) * cos(theta(w)), (w, 0, all_)), "L is constant"),
             follows(light, rho * arriving, "the integral is ρ", "ρ"),
         ),
-        source=at(VEACH, "section 5.A"),
+        source=VEACH,
         tags=("energy",),
     )
 
