@@ -18,7 +18,7 @@ from radiokit.worlds.lecture.entry import TITLES, Entry, Word
 from radiokit.worlds.lecture.experiments.materials import diffuse_albedo, sum_of_lamps
 from radiokit.worlds.lecture.experiments.quantities import total_flux
 from radiokit.worlds.lecture.ledger import Claim, entries
-from radiokit.worlds.lecture.printed import clashes, read
+from radiokit.worlds.lecture.printed import clashes, read, values
 
 ENTRIES = {entry.name: entry for entry in entries()}
 
@@ -156,6 +156,36 @@ def test_a_planted_slip_in_a_right_formula_is_wrong():
     claim = Claim(replace(entry, printed=r"L = \frac{d\Phi}{d\omega dS \cos\theta}"))
     assert claim.verdict is Word.WRONG
     assert claim.judgement.outcome is Outcome.VIOLATED
+
+
+@pytest.mark.parametrize(
+    ("name", "right", "wrong"),
+    [
+        ("radiance", r"\cos\theta", r"2 \cos\theta"),
+        ("radiance-from-others", r"\frac{dM}{", r"\frac{dM}{2 "),
+        ("intensity", r"\frac{d\Phi}", r"\frac{2 d\Phi}"),
+        ("irradiance", r"\frac{d\Phi}", r"\frac{2 d\Phi}"),
+        ("exitance", r"\frac{d\Phi}", r"\frac{2 d\Phi}"),
+        ("flux-of-a-point-source", r"4\pi", r"2\pi"),
+        ("diffuse-one-over-pi", r"\pi", r"2 \pi"),
+        ("sum-over-lamps", r"\sum", r"2 \sum"),
+    ],
+)
+def test_a_planted_factor_that_no_unit_shows_is_wrong(name, right, wrong):
+    entry = ENTRIES[name]
+    assert right in entry.printed
+    assert Claim(replace(entry, printed=entry.printed.replace(right, wrong, 1))).verdict is Word.WRONG
+
+
+@pytest.mark.parametrize("name", ["irradiance-of-a-beam", "brdf", "brdf-again"])
+def test_a_planted_factor_in_a_correction_is_wrong(name):
+    entry = ENTRIES[name]
+    assert Claim(replace(entry, corrected=entry.corrected.replace("L_i", "2 L_i"))).verdict is Word.WRONG
+
+
+def test_a_symbol_without_a_number_is_said():
+    with pytest.raises(ParameterError, match="known are E"):
+        values(read("E = M"), {"E": 1.0})
 
 
 def test_a_condition_that_is_not_needed_is_reported():

@@ -7,11 +7,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from radiokit.facts.errors import RadiokitError
+from radiokit.facts.errors import ParameterError, RadiokitError
 from radiokit.facts.quantities import Q, quantity
 from radiokit.facts.verdict import Evidence, Outcome, Verdict, Witness
 
-__all__ = ["Case", "Derived", "Experiment", "Formula", "Term", "Unit", "found"]
+__all__ = ["Case", "Derived", "Evaluated", "Experiment", "Formula", "Term", "Unit", "found"]
 
 
 def found(claim: str, value: float, expected: float, within: float, message: str = "") -> Verdict:
@@ -66,6 +66,52 @@ class Formula:
             message="; ".join(clash) or "units, kinds and differentials agree",
             witness=Witness(values={"formula": latex, "clash": "; ".join(clash)}) if clash else None,
         )
+
+
+@dataclass(frozen=True)
+class Evaluated:
+    """The printed formula in numbers: all its sides agree when measured values are put in.
+
+    Parameters
+    ----------
+    numbers : callable
+        Returns the value of each symbol; one with indices that is not named has the value without them.
+    settings : mapping
+        Its keywords.
+    symbols : mapping
+        As ``printed.read`` takes them.
+    within : float
+        The relative difference allowed: a differential is a small number here.
+    """
+
+    numbers: Callable[..., Mapping[str, float]]
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    symbols: Mapping[str, str] = field(default_factory=dict)
+    within: float = 1e-5
+
+    how = "numbers in the formula"
+
+    def judge(self, printed: str) -> Verdict:
+        """Put the numbers in."""
+        from radiokit.worlds.lecture.printed import read, values
+
+        try:
+            sides = values(read(printed, self.symbols), self.numbers(**self.settings))
+        except ParameterError as error:  # a symbol that was not measured
+            return Verdict(
+                check="experiment",
+                claim=f"in numbers, both sides agree: {printed}",
+                outcome=Outcome.INCONCLUSIVE,
+                evidence=Evidence.MEASURED,
+                message=error.message,
+            )
+        worst = max(sides[1:], key=lambda value: abs(value - sides[0]))
+        claim = f"in numbers, both sides agree: {printed}"
+        message = f"in numbers: {' = '.join(f'{value:.6g}' for value in sides)}"
+        within = self.within * abs(sides[0])
+        if abs(worst - sides[0]) > within:
+            message = f"in numbers the sides are {', '.join(f'{value:.6g}' for value in sides)}"
+        return found(claim, worst, sides[0], within, message)
 
 
 @dataclass(frozen=True)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from radiokit.worlds.lecture.deciding import Derived, Experiment, Formula, Term, Unit
+from radiokit.worlds.lecture.deciding import Derived, Evaluated, Experiment, Formula, Term, Unit
 from radiokit.worlds.lecture.entry import Entry
+from radiokit.worlds.lecture.experiments.beams import from_a_point, lamp
 from radiokit.worlds.lecture.experiments.quantities import (
     calorimeter,
     cap_over_square,
@@ -163,7 +164,7 @@ ENTRIES = (
         sentence="Плотность потока света, проходящего через телесный угол",
         english="Intensity is flux per solid angle.",
         russian="Сила излучения — поток на единицу телесного угла.",
-        checks=(Formula(), Derived("definition-graph")),
+        checks=(Formula(), Evaluated(from_a_point), Derived("definition-graph")),
         derivation="definition-graph",
     ),
     Entry(
@@ -172,11 +173,16 @@ ENTRIES = (
         printed=r"Полный поток = $4\pi \cdot I$",
         english="Φ = 4π I, where 4π is the number of steradians all round.",
         russian="Φ = 4π I, где 4π — число стерадиан в полном телесном угле.",
-        checks=(Formula({"Полный поток": "radiant_flux"}), Experiment(total_flux, {"isotropic": False})),
+        checks=(
+            Formula({"Полный поток": "radiant_flux"}),
+            Evaluated(lamp, {"isotropic": False}, {"Полный поток": "radiant_flux"}),
+            Experiment(total_flux, {"isotropic": False}),
+        ),
         condition="the source is isotropic, and 4π is in steradians",
         condition_ru="источник изотропный, а 4π измеряется в стерадианах",
         amended=(
             Formula({"Полный поток": "radiant_flux", "π": "sr"}),
+            Evaluated(lamp, {"isotropic": True}, {"Полный поток": "radiant_flux"}),
             Experiment(total_flux, {"isotropic": True}),
             Derived("isotropic-flux"),
         ),
@@ -197,7 +203,7 @@ ENTRIES = (
         printed=r"E = \frac{d\Phi}{dS}",
         english="Irradiance is the flux that arrives per area.",
         russian="Облучённость — падающий поток на единицу площади.",
-        checks=(Formula(), Derived("definition-graph")),
+        checks=(Formula(), Evaluated(from_a_point), Derived("definition-graph")),
         derivation="definition-graph",
     ),
     _unit("unit-irradiance", 26, r"$\text{Вт}/\text{м}^2$", "irradiance", "облучённость"),
@@ -221,7 +227,7 @@ ENTRIES = (
         printed=r"M = \frac{d\Phi}{dS}",
         english="Exitance is the flux that leaves per area.",
         russian="Энергетическая светимость — испускаемый поток на единицу площади.",
-        checks=(Formula(), Derived("definition-graph")),
+        checks=(Formula(), Evaluated(from_a_point), Derived("definition-graph")),
         derivation="definition-graph",
     ),
     _unit("unit-exitance", 28, "Вт/м<sup>2</sup>", "radiant_exitance", "энергетическая светимость"),

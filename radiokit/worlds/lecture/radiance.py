@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from radiokit.worlds.lecture.deciding import Derived, Experiment, Formula, Unit
+from radiokit.worlds.lecture.deciding import Derived, Evaluated, Experiment, Formula, Unit
 from radiokit.worlds.lecture.entry import Entry
+from radiokit.worlds.lecture.experiments.beams import onto_a_surface
 from radiokit.worlds.lecture.experiments.quantities import patch, pixel, point_source, through_vacuum
 
 __all__ = ["ENTRIES"]
@@ -54,7 +55,7 @@ ENTRIES = (
         printed=r"L = \frac{d^2\Phi}{d\omega dS \cos\theta}",
         english="Radiance is the flux per solid angle and projected area.",
         russian="Энергетическая яркость — поток на единицу телесного угла и проекции площади.",
-        checks=(Formula(), Derived("definition-graph")),
+        checks=(Formula(), Evaluated(onto_a_surface), Derived("definition-graph")),
         derivation="definition-graph",
     ),
     Entry(
@@ -104,7 +105,7 @@ ENTRIES = (
         english="Radiance by intensity per projected area, and by irradiance or exitance per projected "
         "solid angle.",
         russian="Яркость через силу излучения, облучённость и светимость.",
-        checks=(Formula(), Derived("radiance-from-others")),
+        checks=(Formula(), Evaluated(onto_a_surface), Derived("radiance-from-others")),
         derivation="radiance-from-others",
     ),
 )

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from radiokit.worlds.lecture.deciding import Case, Derived, Experiment, Formula
+from radiokit.worlds.lecture.deciding import Case, Derived, Evaluated, Experiment, Formula
 from radiokit.worlds.lecture.entry import Entry
+from radiokit.worlds.lecture.experiments.beams import diffuse, onto_a_surface, reflected
 from radiokit.worlds.lecture.experiments.materials import (
     conservation,
     diffuse_albedo,
@@ -65,7 +66,7 @@ ENTRIES = (
         russian="Облучённость от телесного угла dω_i равна dE = L_i cosθ_i dω_i.",
         checks=(Formula(),),
         corrected=r"dE(p, \omega_i) = L_i(p, \omega_i) \cos \theta_i d\omega_i",
-        amended=(Formula(), Derived("irradiance-from-radiance")),
+        amended=(Formula(), Evaluated(onto_a_surface), Derived("irradiance-from-radiance")),
         derivation="irradiance-from-radiance",
     ),
     Entry(
@@ -89,7 +90,7 @@ ENTRIES = (
         checks=(Formula(),),
         corrected=r"f_r(p, \omega_o, \omega_i) = \frac{dL_o(p, \omega_o)}{dE(p, \omega_i)} = "
         r"\frac{dL_o(p, \omega_o)}{L_i(p, \omega_i) \cos \theta_i d\omega_i}",
-        amended=(Formula(), Derived("brdf-definition")),
+        amended=(Formula(), Evaluated(reflected), Derived("brdf-definition")),
         derivation="brdf-definition",
     ),
     Entry(
@@ -130,11 +131,16 @@ ENTRIES = (
         sentence="Для идеального диффузного отражения",
         english="f = 1/π, with π in steradians; in general f = ρ/π.",
         russian="f = 1/π, где π в стерадианах; в общем случае f = ρ/π.",
-        checks=(Formula(), Experiment(diffuse_albedo, {"reflectance": 0.5})),
+        checks=(
+            Formula(),
+            Evaluated(diffuse, {"reflectance": 0.5}),
+            Experiment(diffuse_albedo, {"reflectance": 0.5}),
+        ),
         condition="the albedo is 1: the surface absorbs nothing",
         condition_ru="альбедо равно 1: поверхность ничего не поглощает",
         amended=(
             Formula({"π": "sr"}),
+            Evaluated(diffuse, {"reflectance": 1.0}),
             Experiment(diffuse_albedo, {"reflectance": 1.0}),
             Derived("lambertian-brdf"),
         ),

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from radiokit.worlds.lecture.deciding import Case, Derived, Experiment, Formula, Term
+from radiokit.worlds.lecture.deciding import Case, Derived, Evaluated, Experiment, Formula, Term
 from radiokit.worlds.lecture.entry import Entry
+from radiokit.worlds.lecture.experiments.beams import reflected, two_lamps
 from radiokit.worlds.lecture.experiments.materials import (
     by_wavelength,
     elsewhere,
@@ -65,7 +66,7 @@ ENTRIES = (
         checks=(Formula(),),
         corrected=r"f_r(p, \omega_o, \omega_i) = \frac{dL_o(p, \omega_o)}{L_i(p, \omega_i) \cos \theta_i "
         r"d\omega_i}",
-        amended=(Formula(), Derived("brdf-definition")),
+        amended=(Formula(), Evaluated(reflected), Derived("brdf-definition")),
         derivation="brdf-definition",
     ),
     Entry(
@@ -89,13 +90,18 @@ ENTRIES = (
         printed=r"L(p, \omega_o) = \sum_{j=0}^{n-1} f_r(p, \omega_o, \omega_i^j) L_i^j \cos \theta_i^j",
         english="A sum over n lamps in the place of the integral.",
         russian="Сумма по n источникам вместо интеграла.",
-        checks=(Formula(), Experiment(sum_of_lamps, {"factor": "radiance"})),
+        checks=(
+            Formula(),
+            Evaluated(two_lamps, {"factor": "radiance"}),
+            Experiment(sum_of_lamps, {"factor": "radiance"}),
+        ),
         condition="L_i^j is no radiance but the irradiance on a surface that faces the lamp (or carries "
         "Δω_j)",
         condition_ru="L_i^j — не яркость, а облучённость площадки, обращённой к источнику (или стоит "
         "множитель Δω_j)",
         amended=(
             Formula({"L_i_j": "irradiance"}),
+            Evaluated(two_lamps, {"factor": "irradiance"}),
             Experiment(sum_of_lamps, {"factor": "irradiance"}),
             Derived("sum-over-delta-lights"),
         ),
