@@ -13,8 +13,9 @@ from radiokit.faces.cli import main
 from radiokit.faces.validate import validate
 from radiokit.facts.errors import ParameterError, UnknownNameError
 from radiokit.facts.verdict import Evidence, Outcome
-from radiokit.worlds.lecture.deciding import Derived, Experiment, Formula, Term, Unit, found
+from radiokit.worlds.lecture.deciding import Derived, Evaluated, Experiment, Formula, Term, Unit, found
 from radiokit.worlds.lecture.entry import TITLES, Entry, Word
+from radiokit.worlds.lecture.experiments.beams import hemisphere
 from radiokit.worlds.lecture.experiments.materials import diffuse_albedo, sum_of_lamps
 from radiokit.worlds.lecture.experiments.quantities import total_flux
 from radiokit.worlds.lecture.ledger import Claim, entries
@@ -169,6 +170,9 @@ def test_a_planted_slip_in_a_right_formula_is_wrong():
         ("flux-of-a-point-source", r"4\pi", r"2\pi"),
         ("diffuse-one-over-pi", r"\pi", r"2 \pi"),
         ("sum-over-lamps", r"\sum", r"2 \sum"),
+        ("reflection-integral", r"\cos \theta_i", r"\cos^2 \theta_i"),
+        ("reflection-integral", r"L_i", r"2 L_i"),
+        ("brdf-conserves-energy", r"\cos \theta'", r"2 \cos \theta'"),
     ],
 )
 def test_a_planted_factor_that_no_unit_shows_is_wrong(name, right, wrong):
@@ -181,6 +185,13 @@ def test_a_planted_factor_that_no_unit_shows_is_wrong(name, right, wrong):
 def test_a_planted_factor_in_a_correction_is_wrong(name):
     entry = ENTRIES[name]
     assert Claim(replace(entry, corrected=entry.corrected.replace("L_i", "2 L_i"))).verdict is Word.WRONG
+
+
+def test_a_formula_that_gives_out_more_than_it_gets_breaks_the_limit():
+    numbers = {"name": "blinn_phong", "exponent": 10.0, "normalization": "n+8"}
+    printed = ENTRIES["brdf-conserves-energy"].printed
+    assert Evaluated(hemisphere, {"name": "blinn_phong", "exponent": 10.0}).judge(printed).ok
+    assert Evaluated(hemisphere, numbers).judge(printed).outcome is Outcome.VIOLATED
 
 
 def test_a_symbol_without_a_number_is_said():

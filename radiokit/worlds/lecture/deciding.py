@@ -96,7 +96,8 @@ class Evaluated:
         from radiokit.worlds.lecture.printed import read, values
 
         try:
-            sides = values(read(printed, self.symbols), self.numbers(**self.settings))
+            reading = read(printed, self.symbols)
+            sides = values(reading, self.numbers(**self.settings))
         except ParameterError as error:  # a symbol that was not measured
             return Verdict(
                 check="experiment",
@@ -105,13 +106,15 @@ class Evaluated:
                 evidence=Evidence.MEASURED,
                 message=error.message,
             )
-        worst = max(sides[1:], key=lambda value: abs(value - sides[0]))
-        claim = f"in numbers, both sides agree: {printed}"
-        message = f"in numbers: {' = '.join(f'{value:.6g}' for value in sides)}"
         within = self.within * abs(sides[0])
-        if abs(worst - sides[0]) > within:
-            message = f"in numbers the sides are {', '.join(f'{value:.6g}' for value in sides)}"
-        return found(claim, worst, sides[0], within, message)
+        off = [_excess(sides[0], sign, value) for sign, value in zip(reading.signs, sides[1:], strict=True)]
+        message = f"in numbers the sides are {', '.join(f'{value:.6g}' for value in sides)}"
+        return found(f"in numbers, the sides agree: {printed}", max(off), 0.0, within, message)
+
+
+def _excess(left: float, sign: str, right: float) -> float:
+    """Return by how much two sides break their sign."""
+    return {"=": abs(left - right), "≤": max(0.0, left - right), "≥": max(0.0, right - left)}[sign]
 
 
 @dataclass(frozen=True)

@@ -33,8 +33,10 @@ def clashes(reading: Reading) -> tuple[Clash, ...]:
     return tuple(dict.fromkeys(found))
 
 
-def values(reading: Reading, numbers: Mapping[str, float]) -> list[float]:
-    r"""Return the value of each side of a formula without integrals.
+def values(reading: Reading, numbers: Mapping[str, Any]) -> list[float]:
+    r"""Return the value of each side of a formula.
+
+    An integral over ω is a sum: "dω" has an array of weights, and what varies has an array of its values.
 
     Raises
     ------
@@ -45,8 +47,8 @@ def values(reading: Reading, numbers: Mapping[str, float]) -> list[float]:
     [2.0, 2.0]
     """
 
-    def number(symbol: Any) -> float:
-        name = str(symbol)
+    def number(symbol: Any, prefix: str = "") -> Any:
+        name = f"{prefix}{symbol}"
         while name not in numbers:
             shorter = re.sub(r"(?:'|_[^_]*)$", "", name)
             if shorter == name:
@@ -54,10 +56,18 @@ def values(reading: Reading, numbers: Mapping[str, float]) -> list[float]:
             name = shorter
         return numbers[name]
 
+    def summed(integral: Any) -> Any:
+        (variable,) = integral.limits[0]
+        symbols = sorted(integral.function.free_symbols, key=str)
+        integrand = sympy.lambdify(symbols, integral.function, "numpy")
+        weights = number(variable, "d")
+        return sympy.Float(float((integrand(*map(number, symbols)) * weights).sum()))
+
     found = []
     for side in reading.sides:
-        known = {symbol: 1 if symbol == SR else number(symbol) for symbol in side.free_symbols}
-        found.append(float(side.subs(known).doit()))
+        plain = side.replace(lambda part: isinstance(part, sympy.Integral), summed)
+        known = {symbol: 1 if symbol == SR else number(symbol) for symbol in plain.free_symbols}
+        found.append(float(plain.subs(known).doit()))
     return found
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from radiokit.worlds.lecture.deciding import Case, Derived, Evaluated, Experiment, Formula
 from radiokit.worlds.lecture.entry import Entry
-from radiokit.worlds.lecture.experiments.beams import diffuse, onto_a_surface, reflected
+from radiokit.worlds.lecture.experiments.beams import diffuse, hemisphere, onto_a_surface, reflected
 from radiokit.worlds.lecture.experiments.materials import (
     conservation,
     diffuse_albedo,
@@ -110,7 +110,7 @@ ENTRIES = (
         sentence="Сохранение энергии",
         english="The directional albedo is at most 1.",
         russian="Альбедо для каждого направления не превышает 1.",
-        checks=(Formula(), Experiment(conservation), Derived("energy-conservation")),
+        checks=(Formula(), Evaluated(hemisphere), Experiment(conservation), Derived("energy-conservation")),
         derivation="energy-conservation",
         case="ggx-1-in-furnace-at-0deg",
     ),

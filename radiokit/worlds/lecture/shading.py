@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from radiokit.worlds.lecture.deciding import Case, Derived, Evaluated, Experiment, Formula, Term
 from radiokit.worlds.lecture.entry import Entry
-from radiokit.worlds.lecture.experiments.beams import reflected, two_lamps
+from radiokit.worlds.lecture.experiments.beams import hemisphere, reflected, two_lamps
 from radiokit.worlds.lecture.experiments.materials import (
     by_wavelength,
     elsewhere,
@@ -77,6 +77,7 @@ ENTRIES = (
         russian="Интеграл отражения.",
         checks=(
             Formula(),
+            Evaluated(hemisphere),
             Experiment(furnace),
             Derived("reflection-integral"),
             Case("phong-10-under-sphere"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from radiokit.contracts.emitter import emitter
 from radiokit.worlds.scene import irradiance, solid_angle
 from radiokit.worlds.shading import shade
 
-__all__ = ["diffuse", "from_a_point", "lamp", "onto_a_surface", "reflected", "two_lamps"]
+__all__ = ["diffuse", "from_a_point", "hemisphere", "lamp", "onto_a_surface", "reflected", "two_lamps"]
 
 _TILT = 0.7  # of the surface against the beam [rad]
 _AREA = 1e-6  # dS [m²]
@@ -62,6 +63,23 @@ def reflected() -> Mapping[str, float]:
     f = bsdf("ggx", alpha=0.5)
     radiance = float(shade(f, disk, _WO).value)
     return {**beam, "L_i": 3.0, "dL_o": radiance, "f_r": float(f(towards, _WO))}
+
+
+def hemisphere(name: str = "phong", **parameters: Any) -> Mapping[str, Any]:
+    """A surface under a sky of radiance 2: its BRDF on a grid of directions, and what it reflects."""
+    nodes, weights = np.polynomial.legendre.leggauss(64)
+    mu, phi = np.meshgrid(0.5 * (nodes + 1), 2 * math.pi * np.arange(64) / 64, indexing="ij")
+    sine = np.sqrt((1 - mu) * (1 + mu))
+    wi = np.stack([sine * np.cos(phi), sine * np.sin(phi), mu], axis=-1).reshape(-1, 3)
+    f = bsdf(name, **parameters)
+    seen = float(shade(f, emitter("constant", radiance=2.0), (0.0, 0.0, 1.0)).value)
+    return {
+        "L": seen,
+        "f_r": np.asarray(f(wi, np.broadcast_to((0.0, 0.0, 1.0), wi.shape))),
+        "L_i": np.full(len(wi), 2.0),
+        "θ": np.arccos(mu).ravel(),
+        "dω": np.repeat(0.5 * weights * 2 * math.pi / 64, 64),
+    }
 
 
 def diffuse(reflectance: float) -> Mapping[str, float]:
