@@ -20,7 +20,6 @@ ENTRIES = (
         checks=(
             Formula({"r": "m"}, r"I = L \pi r^2"),
             Experiment(point_source),
-            Derived("irradiance-from-sphere"),
         ),
         derivation="irradiance-from-sphere",
         case="lambert-under-sphere-at-100m",
