@@ -47,12 +47,15 @@ from .physics import fresnel as fresnel
 from .physics import integrating_sphere as integrating_sphere
 from .physics import relations as relations
 from .physics import view_factor as view_factor
+from .physics.relate.request import list_relations as list_relations
+from .physics.relate.request import relate as relate
 from .physics.relations.catalogue import derive as derive
 from .physics.relations.catalogue import list_derivations as list_derivations
 from .worlds import enclosure as enclosure
 from .worlds.cases.catalogue import case as case
 from .worlds.cases.catalogue import list_cases as list_cases
 from .worlds.enclosure import enclosure_radiance as enclosure_radiance
+from .worlds.lecture.ledger import lecture_claims as lecture_claims
 from .worlds.scene import irradiance as irradiance
 from .worlds.scene import solid_angle as solid_angle
 from .worlds.shading import explain as explain

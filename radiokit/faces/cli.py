@@ -11,6 +11,7 @@ import typer
 from radiokit.faces.bench.command import bench
 from radiokit.faces.console import fail, progress_bar, show_json, show_report, show_table, write
 from radiokit.faces.derive import derive
+from radiokit.faces.lecture import lecture
 from radiokit.faces.models import models
 from radiokit.faces.render.command import render
 from radiokit.faces.stability.command import stability
@@ -71,7 +72,7 @@ def validate(
     figures: Annotated[Path, typer.Option(help="Folder of the work-precision diagram.")] = Path("figures"),
     no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw nothing.")] = False,
 ) -> None:
-    """Check every model, every closed-form case by every method that applies, and every derivation."""
+    """Check every model, every case by every method that applies, every derivation, and the lecture."""
     from radiokit.faces.validate import validate as run
     from radiokit.faces.workers import available_workers, open_executor
 
@@ -117,6 +118,11 @@ def _show_validation(found: Any) -> None:
         ("derivation", "finding", "outcome"),
         [(each.name, each.verdict.message, each.outcome) for each in found.derivations],
     )
+    show_table(
+        "the lecture",
+        ("line", "finding", "as it is read"),
+        [(verdict.check, verdict.message, verdict.outcome) for verdict in found.lecture],
+    )
     worst = [
         f"{r.subject} {v.check}: {v.message}"
         for r in found.models
@@ -125,11 +131,13 @@ def _show_validation(found: Any) -> None:
     ]
     worst += [f"{r.case} by {r.method}: {r.verdict.message}" for r in found.cases if not r.verdict.ok]
     worst += [f"{each.name}: {each.verdict.message}" for each in found.derivations if not each.ok]
+    worst += [f"the lecture's {v.check}: {v.message}" for v in found.lecture if not v.ok]
     for line in worst:
         write(f"not as it should be: {line}")
     write(
         f"{found.outcome}: {len(found.models)} models, {len(found.cases)} answers to closed-form cases, "
-        f"{len(found.derivations)} derivations, {found.seconds:.1f} s with {found.workers} workers"
+        f"{len(found.derivations)} derivations, {len(found.lecture)} lines of the lecture, "
+        f"{found.seconds:.1f} s with {found.workers} workers"
     )
 
 
@@ -269,6 +277,7 @@ def _show_case(each: Any) -> None:
 
 app.command()(bench)
 app.command()(derive)
+app.command()(lecture)
 app.command()(models)
 app.command(context_settings=_OPEN)(render)
 app.command()(stability)

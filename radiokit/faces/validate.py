@@ -1,4 +1,4 @@
-"""Validate: the main job. Every derivation, every model before every judge, every case by every method."""
+"""Validate: the main job: derivations, the lecture, every model before the judges, every case."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ from radiokit.measure.statistics import sidak
 from radiokit.physics.relations.catalogue import list_derivations, unverified
 from radiokit.physics.relations.derivation import Derivation, Finding
 from radiokit.worlds.cases.catalogue import case, list_cases
+from radiokit.worlds.lecture.ledger import lecture_claims
 
 __all__ = ["LEVEL", "CaseRow", "Validation", "everything", "validate"]
 
@@ -77,11 +78,13 @@ class Validation:
     seconds: float
     workers: int
     derivations: tuple[Derivation, ...] = ()
+    lecture: tuple[Verdict, ...] = ()
 
     @property
     def outcome(self) -> Outcome:
         """The worst outcome of what must hold."""
         found = {row.verdict.outcome for row in self.cases} | {each.outcome for each in self.derivations}
+        found |= {verdict.outcome for verdict in self.lecture}
         found |= {v.outcome for report in self.models for v in report if v.check in MUST_HOLD}
         for outcome in (Outcome.VIOLATED, Outcome.INCONCLUSIVE):
             if outcome in found:
@@ -104,6 +107,7 @@ class Validation:
             "models": [report.to_json() for report in self.models],
             "cases": [row.to_json() for row in self.cases],
             "derivations": [each.verdict.to_json() for each in self.derivations],
+            "lecture": [verdict.to_json() for verdict in self.lecture],
         }
 
 
@@ -127,7 +131,7 @@ def everything(
     Raises
     ------
     UnknownNameError
-        When one of ``names`` is no model, case or derivation.
+        When one of ``names`` is no model, case or derivation, nor "lecture".
 
     >>> everything(["lambert"])[0][1]
     ('lambert', {'reflectance': 0.5})
@@ -136,7 +140,7 @@ def everything(
     rows = [(name, method) for name in list_cases() for method in case(name).methods]
     if names is None:
         return models, rows
-    wanted, known = list(names), [*REGISTRY.classes, *list_cases(), *list_derivations()]
+    wanted, known = list(names), [*REGISTRY.classes, *list_cases(), *list_derivations(), "lecture"]
     for name in wanted:
         if name not in known:
             raise UnknownNameError("model or case", name, known)
@@ -156,7 +160,7 @@ def validate(
     Parameters
     ----------
     names : iterable of str, optional
-        Only these models, cases and derivations.
+        Only these models, cases and derivations; "lecture" for the lecture's claims.
     executor : concurrent.futures.Executor, optional
         Where the work is done; the findings do not depend on it.
     workers : int
@@ -173,6 +177,8 @@ def validate(
     tasks: list[tuple[Any, ...]] = [("model", name, values, count) for name, values in models]
     tasks += [("case", name, method, count, seed + i) for i, (name, method) in enumerate(rows)]
     tasks += [("derivation", name) for name in list_derivations() if names is None or name in names]
+    if names is None or "lecture" in names:
+        tasks += [("lecture", claim.entry.name) for claim in lecture_claims()]
     found = list(_run(executor or SerialExecutor(), tasks, progress))
     return Validation(
         models=tuple(item for item in found if isinstance(item, Report)),
@@ -180,12 +186,13 @@ def validate(
         seconds=time.perf_counter() - start,
         workers=workers,
         derivations=tuple(item for item in found if isinstance(item, Derivation)),
+        lecture=tuple(item for item in found if isinstance(item, Verdict)),
     )
 
 
 def _run(
     executor: Executor, tasks: Sequence[tuple[Any, ...]], progress: Callable[[int, int], None] | None
-) -> Iterator[Report | CaseRow | Derivation]:
+) -> Iterator[Report | CaseRow | Derivation | Verdict]:
     for done, item in enumerate(executor.map(_task, tasks), start=1):
         if progress is not None:
             progress(done, len(tasks))
@@ -196,9 +203,11 @@ def _run(
             yield item
 
 
-def _task(task: tuple[Any, ...]) -> Report | CaseRow | tuple[str, tuple[Finding, ...]]:
+def _task(task: tuple[Any, ...]) -> Report | CaseRow | Verdict | tuple[str, tuple[Finding, ...]]:
     if task[0] == "derivation":
         return prove((task[1], False))
+    if task[0] == "lecture":
+        return lecture_claims()[task[1]].judgement
     if task[0] == "model":
         return _judge_model(*task[1:])
     return _answer_case(*task[1:])

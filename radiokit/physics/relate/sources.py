@@ -1,0 +1,163 @@
+"""Sources: relations to energy, flux and intensity."""
+
+from __future__ import annotations
+
+from radiokit.physics.relate.common import (
+    AXIS,
+    DIFFUSE,
+    EVEN,
+    FLAT,
+    ISOTROPIC,
+    POINT,
+    SMALL,
+    STEADY,
+    cos,
+    five_times,
+    pi,
+    row,
+    small,
+    sr,
+)
+from radiokit.physics.relate.relation import Relation
+
+__all__ = ["RELATIONS"]
+
+_FLUX = (
+    row(
+        "energy-from-flux",
+        "energy",
+        "flux time",
+        r"Q = \Phi t",
+        lambda flux, time: flux * time,
+        STEADY,
+        "flux-from-energy",
+    ),
+    row(
+        "flux-from-energy",
+        "flux",
+        "energy time",
+        r"\Phi = \frac{Q}{t}",
+        lambda energy, time: energy / time,
+        STEADY,
+        "flux-from-energy",
+    ),
+    row(
+        "isotropic-flux",
+        "flux",
+        "intensity",
+        r"\Phi = 4 \pi I",
+        lambda intensity: 4 * pi() * intensity,
+        ISOTROPIC,
+        "isotropic-flux",
+    ),
+    row(
+        "lambertian-flux",
+        "flux",
+        "intensity",
+        r"\Phi = \pi I",
+        lambda intensity: pi() * intensity,
+        FLAT,
+        "lambertian-disk-flux",
+    ),
+    row(
+        "flux-into-solid-angle",
+        "flux",
+        "intensity solid_angle",
+        r"\Phi = I \Omega",
+        lambda intensity, solid_angle: intensity * solid_angle,
+        "the intensity is the same all over the solid angle",
+        "definition-graph",
+    ),
+    row(
+        "flux-on-area",
+        "flux",
+        "irradiance area",
+        r"\Phi = E A",
+        lambda irradiance, area: irradiance * area,
+        EVEN,
+        "definition-graph",
+    ),
+    row(
+        "flux-from-area",
+        "flux",
+        "exitance area",
+        r"\Phi = M A",
+        lambda exitance, area: exitance * area,
+        EVEN,
+        "definition-graph",
+    ),
+    row(
+        "flux-of-lambertian-area",
+        "flux",
+        "radiance area",
+        r"\Phi = \pi L A",
+        lambda radiance, area: pi() * radiance * area,
+        DIFFUSE,
+        "lambertian-exitance",
+    ),
+    row(
+        "flux-of-beam",
+        "flux",
+        "radiance area solid_angle",
+        r"\Phi = L A \Omega \cos\theta",
+        lambda radiance, area, solid_angle, angle_deg: radiance * area * solid_angle * cos(angle_deg),
+        SMALL,
+        "definition-graph",
+        may=AXIS,
+        judge=small,
+    ),
+)
+
+_INTENSITY = (
+    row(
+        "isotropic-intensity",
+        "intensity",
+        "flux",
+        r"I = \frac{\Phi}{4 \pi}",
+        lambda flux: flux / (4 * pi()),
+        ISOTROPIC,
+        "isotropic-flux",
+    ),
+    row(
+        "lambertian-axial-intensity",
+        "intensity",
+        "flux",
+        r"I = \frac{\Phi}{\pi}",
+        lambda flux: flux / pi(),
+        FLAT,
+        "lambertian-disk-flux",
+    ),
+    row(
+        "intensity-in-solid-angle",
+        "intensity",
+        "flux solid_angle",
+        r"I = \frac{\Phi}{\Omega}",
+        lambda flux, solid_angle: flux / solid_angle,
+        "it is the same all over the solid angle; otherwise this is the mean",
+        "definition-graph",
+    ),
+    row(
+        "intensity-from-irradiance",
+        "intensity",
+        "irradiance distance",
+        r"I = \frac{E r^2}{\Omega_0 \cos\theta}",
+        lambda irradiance, distance, angle_deg: irradiance * distance**2 / (sr() * cos(angle_deg)),
+        POINT,
+        "irradiance-from-intensity",
+        may=AXIS,
+        notes=("diameter",),
+        judge=five_times,
+    ),
+    row(
+        "intensity-of-area",
+        "intensity",
+        "radiance area",
+        r"I = L A \cos\theta",
+        lambda radiance, area, angle_deg: radiance * area * cos(angle_deg),
+        "the radiance is the same everywhere on the area, which is flat",
+        "lambertian-intensity",
+        may=AXIS,
+    ),
+)
+
+RELATIONS: tuple[Relation, ...] = (*_FLUX, *_INTENSITY)

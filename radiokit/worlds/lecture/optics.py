@@ -1,0 +1,142 @@
+"""Optics: slides 4 to 13, on waves and rays: five laws of rays, and what they leave out."""
+
+from __future__ import annotations
+
+from radiokit.worlds.lecture.deciding import Derived, Experiment, Formula
+from radiokit.worlds.lecture.entry import Entry
+from radiokit.worlds.lecture.experiments.optics import (
+    channel_means,
+    edge_of_a_shadow,
+    photon_energy,
+    reflection_by_least_time,
+    refraction_by_least_time,
+    reversed_path,
+    slit,
+    transverse,
+    two_beams,
+    two_reflections,
+)
+
+__all__ = ["ENTRIES"]
+
+ENTRIES = (
+    Entry(
+        name="no-rgb",
+        slide=4,
+        printed="Нет никакого RGB",
+        english="Light is computed with its spectrum: means over three bands must not be multiplied.",
+        russian="Расчёт ведут по спектру: средние по трём полосам перемножать нельзя.",
+        checks=(Experiment(channel_means),),
+    ),
+    Entry(
+        name="energy-of-photons",
+        slide=6,
+        printed="Поток фотонов",
+        english="The energy of n photons of wavelength λ is Q = n h c/λ.",
+        russian="Энергия n фотонов с длиной волны λ равна Q = n h c/λ.",
+        checks=(
+            Formula(
+                {"n": "1", "h": "J s", "c": "m/s", "λ": "m"},
+                latex=r"Q = \frac{n h c}{\lambda}",
+            ),
+        ),
+    ),
+    Entry(
+        name="photoelectric-effect",
+        slide=7,
+        printed="Излучение электронов под действием света",
+        sentence="Является одним из обоснований фотонной теории (теории частиц)",
+        english="Whether electrons leave depends on the wavelength, not on how strong the light is.",
+        russian="Выход электронов зависит от длины волны, а не от интенсивности света.",
+        checks=(Experiment(photon_energy),),
+    ),
+    Entry(
+        name="straight-rays",
+        slide=8,
+        printed="Закон прямолинейного распространения света",
+        english="In a homogeneous medium light goes straight, and the edges of shadows are sharp.",
+        russian="В однородной среде свет распространяется прямолинейно, края теней резкие.",
+        checks=(Experiment(edge_of_a_shadow, {"clearance": 1.0}),),
+        condition="lengths are large against √(λz), z the distance behind the edge",
+        condition_ru="размеры велики по сравнению с √(λz), где z — расстояние за краем экрана",
+        amended=(Experiment(edge_of_a_shadow, {"clearance": 1000.0}),),
+    ),
+    Entry(
+        name="independent-rays",
+        slide=8,
+        printed="Закон независимого распространения лучей",
+        english="Rays that cross do not change one another: what they bring adds.",
+        russian="Пересекающиеся лучи не влияют друг на друга: их действия складываются.",
+        checks=(Experiment(two_beams, {"coherent": True}),),
+        condition="the beams are incoherent",
+        condition_ru="пучки некогерентны",
+        amended=(Experiment(two_beams, {"coherent": False}),),
+    ),
+    Entry(
+        name="law-of-reflection",
+        slide=8,
+        printed="Закон отражения света",
+        english="The angle of reflection is the angle of incidence, in the same plane: the shortest way.",
+        russian="Угол отражения равен углу падения, лучи лежат в одной плоскости: путь кратчайший.",
+        checks=(Experiment(reflection_by_least_time),),
+    ),
+    Entry(
+        name="law-of-refraction",
+        slide=8,
+        printed="Закон преломления света (Закон Снелла)",
+        english="n₁ sinθ₁ = n₂ sinθ₂: the fastest way.",
+        russian="n₁ sinθ₁ = n₂ sinθ₂: путь наименьшего времени (принцип Ферма).",
+        checks=(Experiment(refraction_by_least_time), Derived("snell-from-fermat")),
+        derivation="snell-from-fermat",
+    ),
+    Entry(
+        name="reversed-rays",
+        slide=8,
+        printed="Закон обратимости светового луча",
+        english="A ray sent back takes the same way, and as large a share of it is reflected.",
+        russian="Луч, пущенный обратно, идёт тем же путём, и отражается та же доля потока.",
+        checks=(Experiment(reversed_path),),
+    ),
+    Entry(
+        name="diffraction-and-size",
+        slide=10,
+        printed="Зависит от соотношения между длиной волны и характерным размером неоднородностей среды",
+        sentence="Явление преобразования распространяющейся в пространстве волны",
+        english="Diffraction depends on the ratio of the wavelength and the size of what is in the way.",
+        russian="Дифракция определяется отношением длины волны к размеру препятствия.",
+        checks=(Experiment(slit),),
+    ),
+    Entry(
+        name="transverse-wave",
+        slide=11,
+        printed="Световая волна – поперечная волна",
+        sentence="Волновой вектор и вектор амплитуды",
+        english="Light swings across its way: it has two polarisations, which glass reflects differently.",
+        russian="Колебания поперечны лучу: есть две поляризации, и стекло отражает их по-разному.",
+        checks=(Experiment(transverse), Derived("brewster-angle")),
+        derivation="brewster-angle",
+    ),
+    Entry(
+        name="polarisation-dropped",
+        slide=13,
+        printed="Сразу отбрасываем явления: Поляризации",
+        sentence="Далее мы будем рассматривать свет как поток частиц",
+        english="Reflectances of unpolarised light may be multiplied along a path.",
+        russian="Коэффициенты отражения неполяризованного света можно перемножать вдоль пути.",
+        checks=(Experiment(two_reflections, {"theta_deg": 56.309932474}),),
+        condition="light meets the surfaces head-on, or only one of them",
+        condition_ru="свет падает по нормали или отражается лишь однажды",
+        amended=(Experiment(two_reflections, {"theta_deg": 0.0}),),
+    ),
+    Entry(
+        name="interference-dropped",
+        slide=13,
+        printed="Сразу отбрасываем явления: Дифракции, Интерференции",
+        english="Strengths of beams may be added without their phases.",
+        russian="Освещённости от разных пучков складываются без учёта фаз.",
+        checks=(Experiment(two_beams, {"coherent": True}),),
+        condition="the phases are random, as of thermal light and separate lamps",
+        condition_ru="фазы случайны, как у теплового излучения и независимых ламп",
+        amended=(Experiment(two_beams, {"coherent": False}),),
+    ),
+)
