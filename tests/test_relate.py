@@ -251,7 +251,7 @@ def test_unknown_targets_and_relations_are_refused():
 
 def test_the_answer_shows_and_exports_itself():
     found = rk.relate("irradiance", intensity="5 W/sr", distance="2 m", angle_deg=30)
-    assert "irradiance-from-intensity" in str(found)
+    assert str(found).endswith("derivation: irradiance-from-intensity")
     assert "<pre>" in found._repr_html_()
     data = found.to_json()
     assert data["derivation"] == "irradiance-from-intensity"

@@ -60,8 +60,8 @@ class Related:
         shown = f"{self.value:.6g}" if not getattr(self.value.magnitude, "ndim", 0) else str(self.value)
         state = {None: "holds if", True: "holds:", False: "does not hold:"}[self.condition_holds]
         words = self.condition if not self.fails else f"{self.fails} ({self.condition})"
-        return f"{shown}\n  by {self.relation.name}: {self.formula}\n  {state} {words}\n  derivation: "
-        f"{self.derivation}"
+        lines = [shown, f"  by {self.relation.name}: {self.formula}", f"  {state} {words}"]
+        return "\n".join([*lines, f"  derivation: {self.derivation}"])
 
     def _repr_html_(self) -> str:
         return f"<pre>{escape(str(self))}</pre>"
