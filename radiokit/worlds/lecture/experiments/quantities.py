@@ -98,8 +98,8 @@ def equal_units(left: str, right: str) -> Verdict:
     """One unit in terms of others."""
     first, second = Q(left), Q(right)
     if first.dimensionality != second.dimensionality:
-        message = f"{left} and {right} have different dimensions: {first.to_base_units()} and "
-        f"{second.to_base_units()}"
+        units = f"{first.to_base_units()} and {second.to_base_units()}"
+        message = f"{left} and {right} have different dimensions: {units}"
         return found(f"{left} = {right}", False, True, 0, message)
     ratio = float((first / second).to_base_units().magnitude)
     return found(f"{left} = {right}", ratio, 1.0, 1e-12, f"{left} = {ratio:.12g} × {right}")
