@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from radiokit.contracts.emitter import Emitter
+from radiokit.contracts.oneside import OneSide
 from radiokit.contracts.spectral import times
 from radiokit.emitters.disk import Disk
 from radiokit.emitters.rectangle import Rectangle
@@ -21,6 +22,7 @@ from radiokit.measure.lattice import kronecker
 from radiokit.measure.lune import lune
 from radiokit.measure.quadrature import hemisphere
 from radiokit.measure.slope import slope_rule
+from radiokit.measure.transmission import reflection_edges, transmission
 from radiokit.worlds.budget import Budget
 from radiokit.worlds.finite import MOST, over_light
 from radiokit.worlds.sampling import ZENITH, Sampler
@@ -49,6 +51,7 @@ PROBE_RULE = (40, 28)
 BESIDE, MARGIN = 20.0, 3.0
 """What lies beside the light may be that part of the tolerance; so many times it is added to the error."""
 
+_FLIP = np.array([1.0, 1.0, -1.0])
 _PROBE = 256  # evaluations that tell how long one takes
 _CAREFUL = 0.7  # share of the time that is planned for
 _LEAST = 1024  # evaluations that a quadrature gets in any case
@@ -76,9 +79,25 @@ def integrate(term: Term, rtol: float, budget: Budget | None = None, most: int |
         return _over_square(term, rtol, budget, MOST if most is None else most)
     most = min(_affordable(term, budget), DOME_MOST)
     width = term.f.lobe_width()
+    if not dome and isinstance(term.f, OneSide) and term.f.eta != 1.0:
+        return transmission(
+            lambda w: term.reflected(w * _FLIP),
+            wo=term.wo,
+            eta=term.f.eta,
+            width=term.f.f.lobe_width(),
+            rtol=rtol,
+            smooth=term.f.smooth,
+            max_evaluations=most,
+        )
     if all(float(zenith @ term.receiver.axis) > ZENITH for zenith in dome):
         return hemisphere(
-            term.reflected, wo=term.wo, width=width, rtol=rtol, smooth=term.f.smooth, max_evaluations=most
+            term.reflected,
+            wo=term.wo,
+            width=width,
+            rtol=rtol,
+            smooth=term.f.smooth,
+            edges=reflection_edges(term.f.beyond) if isinstance(term.f, OneSide) else (),
+            max_evaluations=most,
         )
     zenith = term.receiver.to_local(dome[0])
     return lune(term.reflected, zenith, wo=term.wo, width=width, rtol=rtol, max_evaluations=most)
@@ -94,7 +113,13 @@ def lobe_angle(term: Term) -> float | None:
 
 
 def expected_peaks(term: Term) -> tuple[FloatArray, ...]:
-    """Return world directions (3,) of lobes: the mirror's, and ``wo`` where nothing is known of the lobe."""
+    """Return world directions (3,) of lobes: the mirror's, and ``wo`` where nothing is known of the lobe.
+
+    That of light that passes is where a smooth surface would refract it from.
+    """
+    if isinstance(term.f, OneSide) and term.f.through:
+        straight = term.f.refracted(term.wo)
+        return () if straight is None else (term.receiver.to_world(straight),)
     mirror = term.receiver.to_world(term.wo * np.array([-1.0, -1.0, 1.0]))
     return (mirror,) if term.f.lobe_width() is not None else (mirror, term.receiver.to_world(term.wo))
 

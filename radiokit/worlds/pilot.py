@@ -66,6 +66,8 @@ class Cost:
         return {name: jsonable(getattr(self, name)) for name in self.__dataclass_fields__}
 
     def __str__(self) -> str:
+        if not math.isfinite(self.evaluations):
+            return "no sample sees any light, so that it does not stop before its limit"
         count = f"{self.evaluations:.0f}" if self.evaluations < 1e6 else f"{self.evaluations:.0e}"
         text = f"about {count} evaluations, {_duration(self.seconds)}"
         return text if self.error is None else f"{text}, reaching ± {self.error:.0e}"

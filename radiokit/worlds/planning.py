@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from html import escape
 from typing import Any
 
@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from radiokit.contracts.blackbox import as_bsdf
 from radiokit.contracts.emitter import Emitter
+from radiokit.contracts.oneside import OneSide
 from radiokit.facts.directions import check_directions
 from radiokit.facts.errors import ParameterError, RadiokitError, UnknownNameError
 from radiokit.worlds.budget import Budget
@@ -158,6 +159,8 @@ def find_terms(
         parts = (DELTA_LIGHT,) if light.delta else (DELTA_LOBES, SMOOTH)
         found = [Term(model, light, receiver, local, part) for part in parts]
         _ = found[0].shape  # material and light agree on the number of wavelengths
+        if model.transmissive and found[-1].exists:
+            found[-1:] = _both_sides(found[-1])
         terms += [term for term in found if term.exists]
     options = [_options(term) for term in terms]
     exact = all(each[0] == "sum" for each in options)
@@ -170,6 +173,19 @@ def find_terms(
             method=method,
         )
     return repr(model), terms
+
+
+def _both_sides(term: Term) -> list[Term]:
+    """Return what a material reflects, and what passes through it, as two terms that reflect."""
+    below = bool(term.wo[2] < 0)
+    here, there = term.receiver, term.receiver.other_side
+    wo = np.array([term.wo[0], term.wo[1], abs(term.wo[2])])
+    own = OneSide(f=term.f, through=False, below=below)
+    passed = OneSide(f=term.f, through=True, below=below)
+    return [
+        replace(term, f=own, receiver=there if below else here, wo=wo),
+        replace(term, f=passed, receiver=here if below else there, wo=wo),
+    ]
 
 
 def choose(term: Term, method: str, budget: Budget) -> str:
@@ -241,7 +257,8 @@ def _options(term: Term) -> tuple[str, ...]:
 
 
 def _name(term: Term) -> str:
-    return f"{term.light.name}, {term.part}"
+    through = isinstance(term.f, OneSide) and term.f.through
+    return f"{term.light.name}, {term.part}{', through the surface' if through else ''}"
 
 
 def _why(pilot: Pilot, method: str, budget: Budget) -> str:

@@ -57,6 +57,17 @@ class Receiver:
     def _frame(self) -> FloatArray:
         return frame(self.axis)
 
+    @cached_property
+    def other_side(self) -> Receiver:
+        """The same point seen from the other side: the same x and y, and z the other way.
+
+        >>> Receiver((0, 0, 2)).other_side.to_local(np.array([0.6, 0.0, -0.8])).tolist()
+        [0.6, 0.0, 0.8]
+        """
+        found = Receiver(-self.axis, self.origin)
+        found.__dict__["_frame"] = self._frame * np.array([[1.0], [1.0], [-1.0]])
+        return found
+
     def to_local(self, w: FloatArray) -> FloatArray:
         """Return world directions (..., 3) in the frame whose z axis is the normal."""
         return to_local(self._frame, w)

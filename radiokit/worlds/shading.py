@@ -50,8 +50,8 @@ def shade(
     delta lobe is a pair of measure zero and adds 0. The rest goes by ``method``; ``explain`` tells which one
     ``auto`` takes and why.
 
-    Only delta lobes reach below the horizon, and see there the basic radiance L/n²; the smooth part of a
-    material is taken to reflect.
+    Where light passes, what comes from the other side of the surface makes terms of its own. A light's
+    radiance is taken to be the basic one, L/n², on either side.
 
     Parameters
     ----------
