@@ -7,11 +7,14 @@ the horizon, and the second goes along it. Neither the horizon nor the light's r
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
+
+from radiokit.measure.gauss import gauss_legendre
 
 __all__ = ["CapPatch", "DiskPatch"]
 
@@ -19,7 +22,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Swept:
+class _Swept(ABC):
     """A part of a round light; directions are made along (chord, level, up), the rows of ``axes``."""
 
     axes: FloatArray
@@ -41,13 +44,13 @@ class _Swept:
         return abs(self.size - self._measured(20))
 
     def _measured(self, count: int) -> float:
-        x, w = np.polynomial.legendre.leggauss(count)
-        u = np.stack((0.5 * (x + 1), np.full_like(x, 0.5)), axis=-1)  # alike all along a chord
-        return float(np.sum(0.5 * w / self.sample(u)[1]))
+        x, w = gauss_legendre(count)
+        u = np.stack((x, np.full_like(x, 0.5)), axis=-1)  # alike all along a chord
+        return float(np.sum(w / self.sample(u)[1]))
 
+    @abstractmethod
     def sample(self, u: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return directions (N, 3) and their densities (N,) [sr⁻¹]."""
-        raise NotImplementedError
 
     def _directions(self, along: FloatArray, level: FloatArray, up: FloatArray) -> FloatArray:
         across = np.sqrt((1.0 - along) * (1.0 + along))
