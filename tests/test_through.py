@@ -57,6 +57,19 @@ def test_a_sheet_passes_its_share():
     assert rk.shade(SHEET, ground, (0, 0, -1)).value == pytest.approx(0.3, rel=1e-12)
 
 
+def test_a_sheet_has_a_closed_form_on_either_side():
+    for wo in (UP, UNDER):
+        for light in (SKY, DISK):
+            plan = rk.explain(SHEET, light, wo)
+            assert [row.method for row in plan.rows] == ["closed form", "closed form"]
+            exact = rk.shade(SHEET, light, wo)
+            found = rk.shade(SHEET, light, wo, method="quadrature")
+            assert exact.kind == "rounding"
+            assert abs(exact.value - found.value) <= exact.error + found.error
+    colours = rk.bsdf("lambert_transmitter", reflectance=(0.1, 0.2), transmittance=(0.3, 0.4))
+    assert rk.shade(colours, SKY, UP).value == pytest.approx([0.4, 0.6], rel=1e-14)
+
+
 def test_a_surface_turned_over_is_the_same_sheet():
     tilt = rk.emitter("sphere", center=(1, 0.5, -2), radius=0.7, radiance=3.0)
     one = rk.shade(SHEET, tilt, TILTED, normal=(0.3, 0.1, 0.9))

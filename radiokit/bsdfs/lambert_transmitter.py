@@ -123,6 +123,12 @@ class LambertTransmitter(ScalarBSDF):
         """Return 1, the width of a diffuse lobe."""
         return 1.0
 
+    def diffuse_sides(self) -> tuple[Any, Any]:
+        """Return ρ and τ, each of shape () or (K,)."""
+        both = (self.reflectance, self.transmittance)
+        rho, tau = (np.asarray(each) if isinstance(each, tuple) else each for each in both)
+        return rho, tau
+
     @property
     def claims(self) -> Claims:
         """Reciprocal and conserving; lossless when ρ + τ = 1."""

@@ -161,10 +161,18 @@ class BSDF(ABC):
         """Return the distribution of the surface's facets with its masking, or None if it has no facets."""
         return None
 
-    def diffuse_reflectance(self) -> float | None:
+    def diffuse_reflectance(self) -> Any:
         """Return ρ of a model that is ρ/π for every pair of directions above the surface, None for another.
 
         Its reflected radiance is ρE/π, whatever the irradiance E comes from.
+        """
+        return None
+
+    def diffuse_sides(self) -> tuple[Any, Any] | None:
+        """Return ρ and τ of a sheet that is ρ/π for directions on one side and τ/π across it, or None.
+
+        >>> bsdf("lambert_transmitter", reflectance=0.2, transmittance=0.7).diffuse_sides()
+        (0.2, 0.7)
         """
         return None
 

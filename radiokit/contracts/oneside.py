@@ -93,6 +93,11 @@ class OneSide(BSDF):
             return wide
         return None
 
+    def diffuse_reflectance(self) -> Any:
+        """Return ρ or τ of a diffuse sheet, of shape () or (K,), None for another f."""
+        sides = self.f.diffuse_sides()
+        return None if sides is None else sides[int(self.through)]
+
     @property
     def beyond(self) -> float:
         """The index on the other side over that on the viewer's."""
