@@ -222,3 +222,14 @@ def test_the_installed_command_runs_and_is_silent_on_stderr(folder):
     found = subprocess.run(command, capture_output=True, text=True, env=env, check=False, cwd=Path.cwd())
     assert (found.returncode, found.stderr) == (0, "")
     assert "imported" not in found.stdout
+
+
+def test_an_albedo_from_below_needs_a_surface_that_light_passes(run):
+    code, out, err = run("albedo", "rough_dielectric", "--theta", "120", "--json")
+    assert (code, err) == (0, "")
+    assert json.loads(out)["value"] == pytest.approx(0.780186799, rel=1e-7)
+    assert "in [0, 90) or (90, 180] degrees" in run("albedo", "rough_dielectric", "--theta", "90")[2]
+    assert (
+        "theta = 120.0 is not allowed: it must be in [0, 90) degrees"
+        in run("albedo", "ggx", "--theta=120")[2]
+    )

@@ -15,6 +15,7 @@ from radiokit.faces.lecture import lecture
 from radiokit.faces.models import models
 from radiokit.faces.render.command import render
 from radiokit.faces.stability.command import stability
+from radiokit.faces.validation import case_cells, validate
 from radiokit.facts.errors import RadiokitError
 
 __all__ = ["app", "main"]
@@ -51,112 +52,19 @@ def _load(target: str, context: typer.Context) -> Any:
     return load_target(target, parse_parameters(context.args))
 
 
-def _direction(theta: float, phi: float) -> Any:
+def _direction(theta: float, phi: float, *, below: bool = False) -> Any:
     import numpy as np
 
     from radiokit.facts.directions import spherical_to_cartesian
     from radiokit.facts.errors import ParameterError
 
-    if not 0 <= theta < 90:
-        raise ParameterError("theta", theta, "in [0, 90) degrees")
+    if not (0 <= theta < 90 or (below and 90 < theta <= 180)):
+        allowed = "in [0, 90) or (90, 180] degrees" if below else "in [0, 90) degrees"
+        raise ParameterError("theta", theta, allowed)
     return spherical_to_cartesian(np.deg2rad(theta), np.deg2rad(phi))
 
 
-@app.command()
-def validate(
-    names: Annotated[list[str] | None, typer.Argument(help="Models, cases, derivations; or all.")] = None,
-    json: Json = False,
-    workers: Annotated[int | None, typer.Option(help="Local processes; all processors by default.")] = None,
-    scheduler: Annotated[str | None, typer.Option(help="Address of a Dask scheduler to use.")] = None,
-    seed: Annotated[int, typer.Option(help="Seed of the Monte Carlo methods.")] = 0,
-    figures: Annotated[Path, typer.Option(help="Folder of the work-precision diagram.")] = Path("figures"),
-    no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw nothing.")] = False,
-) -> None:
-    """Check every model, every case by every method that applies, every derivation, and the lecture."""
-    from radiokit.faces.validate import validate as run
-    from radiokit.faces.workers import available_workers, open_executor
-
-    count = available_workers() if workers is None else workers
-    with open_executor(count, scheduler) as executor, progress_bar("validating", not json) as progress:
-        found = run(names=names or None, executor=executor, workers=count, seed=seed, progress=progress)
-    drawn = None
-    if not no_figures:
-        from radiokit.faces.plots.work_precision import draw_work_precision
-
-        drawn = draw_work_precision(figures / "work-precision.png", seed=seed)
-    if json:
-        show_json(found.to_json() | {"figures": [] if drawn is None else [str(drawn)]})
-    else:
-        _show_validation(found)
-        if drawn is not None:
-            write(f"work-precision diagram: {drawn}")
-    _exit(found.exit_code)
-
-
-def _show_validation(found: Any) -> None:
-    from radiokit.contracts.bsdf import bsdf
-    from radiokit.faces.validate import MUST_HOLD
-
-    rows = []
-    for report in found.models:
-        usual = bsdf(report.subject).parameters()
-        values = ", ".join(
-            f"{name}={value:g}" if isinstance(value, float) else f"{name}={value}"
-            for name, value in report.parameters.items()
-            if value is not None and value != usual.get(name)
-        )
-        for verdict in report:
-            rows.append((report.subject, values, verdict.check, verdict.outcome, verdict.message))
-    show_table("models", ("model", "parameters", "check", "outcome", "finding"), rows)
-    show_table(
-        "closed-form cases",
-        ("case", "method", "value", "exact", "true error", "claimed", "evaluations", "ms", "outcome"),
-        [_case_cells(row) for row in found.cases],
-    )
-    show_table(
-        "derivations",
-        ("derivation", "finding", "outcome"),
-        [(each.name, each.verdict.message, each.outcome) for each in found.derivations],
-    )
-    show_table(
-        "the lecture",
-        ("line", "finding", "as it is read"),
-        [(verdict.check, verdict.message, verdict.outcome) for verdict in found.lecture],
-    )
-    worst = [
-        f"{r.subject} {v.check}: {v.message}"
-        for r in found.models
-        for v in r
-        if v.check in MUST_HOLD and not v.ok
-    ]
-    worst += [f"{r.case} by {r.method}: {r.verdict.message}" for r in found.cases if not r.verdict.ok]
-    worst += [f"{each.name}: {each.verdict.message}" for each in found.derivations if not each.ok]
-    worst += [f"the lecture's {v.check}: {v.message}" for v in found.lecture if not v.ok]
-    for line in worst:
-        write(f"not as it should be: {line}")
-    write(
-        f"{found.outcome}: {len(found.models)} models, {len(found.cases)} answers to closed-form cases, "
-        f"{len(found.derivations)} derivations, {len(found.lecture)} lines of the lecture, "
-        f"{found.seconds:.1f} s with {found.workers} workers"
-    )
-
-
-def _case_cells(row: Any) -> tuple[Any, ...]:
-    estimate = row.verdict.estimate
-    if estimate is None:
-        return (row.case, row.method, "", f"{row.exact:.10g}", "", "", "", "", row.verdict.outcome)
-    kind = "≤" if estimate.is_bound else "σ"
-    return (
-        row.case,
-        row.method,
-        f"{float(estimate.value):.10g}",
-        f"{row.exact:.10g}",
-        f"{row.true_error:.1e}",
-        f"{kind} {float(estimate.error):.1e}",
-        estimate.evaluations,
-        f"{1e3 * estimate.seconds:.1f}",
-        row.verdict.outcome,
-    )
+app.command()(validate)
 
 
 @app.command(context_settings=_OPEN)
@@ -203,7 +111,7 @@ def albedo(
     from radiokit.contracts.albedo import albedo as integrate
 
     f = _load(target, context)
-    wo = _direction(theta, phi)
+    wo = _direction(theta, phi, below=f.transmissive)
     aim = 1e-6 if rtol is None and method == "quadrature" else rtol
     found = integrate(
         f,
@@ -261,7 +169,7 @@ def cases(
             "ms",
             "outcome",
         )
-        show_table("answers", columns, [_case_cells(row) for row in rows])
+        show_table("answers", columns, [case_cells(row) for row in rows])
     outcomes = {str(row.verdict.outcome) for row in rows}
     _exit(1 if "violated" in outcomes else INCONCLUSIVE if "inconclusive" in outcomes else 0)
 
