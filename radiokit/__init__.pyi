@@ -24,6 +24,7 @@ from .contracts.scalar import Kernels as Kernels
 from .contracts.scalar import ScalarBSDF as ScalarBSDF
 from .faces.diagnosis.catalogue import list_misconceptions as list_misconceptions
 from .faces.diagnosis.diagnose import diagnose as diagnose
+from .faces.diagnosis.function import diagnose_function as diagnose_function
 from .faces.diagnosis.misconception import Misconception as Misconception
 from .faces.diagnosis.result import Diagnosis as Diagnosis
 from .faces.diagnosis.result import Suspicion as Suspicion

@@ -104,6 +104,10 @@ FACTORS: dict[str, Callable[[dict[str, Any]], Any]] = {
     "divided-by-samples-twice": lambda i: 1 / i["samples"],
     "one-sample-off": lambda i: i["samples"] / (i["samples"] - 1),
     "lobe-normalisation": lambda i: 4 * (i["exponent"] + 2) / (i["exponent"] + 8),
+    "viewer-cosine-forgotten": lambda i: 1 / i["wo"][:, 2],
+    "viewer-cosine-twice": lambda i: i["wo"][:, 2],
+    "microfacet-denominator": lambda i: 4 * i["wi"][:, 2] * i["wo"][:, 2],
+    "pdf-of-half-vector": lambda i: 4 * np.sum(i["wo"] * (i["wi"] + i["wo"]), axis=1) / h(i),
     "half-vector-not-normalised": h,
     "half-vector-not-normalised-in-lobe": lambda i: h(i) ** i["exponent"],
 }
@@ -401,6 +405,66 @@ def test_a_diagnosis_is_said_in_russian_html_and_json(world):
     assert "{" not in str(found)
     markup = rk.diagnose([1.0, 2.0], [3.0, 4.0], variants={"<b>": [1.0, 2.0]})
     assert "<b> " not in markup._repr_html_().replace("<b>the", "")
+
+
+def blinn(wi, wo, n=40.0, *, scale=1.0):
+    half = wi + wo
+    return scale * (half[..., 2] / np.linalg.norm(half, axis=-1)) ** n
+
+
+def test_a_function_is_diagnosed_beside_a_model():
+    def right(wi, wo):
+        return blinn(wi, wo, scale=48 / (8 * math.pi))
+
+    def student(**changes):
+        return lambda wi, wo: blinn(wi, wo, **{"scale": 48 / (8 * math.pi), **changes})
+
+    assert rk.diagnose_function(lambda wi, wo: float(right(wi, wo)), right).right
+    assert_found(rk.diagnose_function(student(scale=3 / math.pi), right), "halved")
+    found = rk.diagnose_function(lambda wi, wo: right(wi, wo) * wi[..., 2], right)
+    assert_found(found, "cosine-twice")
+    assert not rk.diagnose_function(student(n=41.0), right)
+
+
+def test_a_model_of_the_package_is_diagnosed_beside_another():
+    model = rk.bsdf("lafortune", exponent=20.0)
+    assert rk.diagnose_function(model, model).right
+    ggx = rk.bsdf("ggx", alpha=0.3)
+    assert_found(
+        rk.diagnose_function(lambda wi, wo: ggx(wi, wo) * 4 * wi[..., 2] * wo[..., 2], ggx),
+        "microfacet-denominator",
+    )
+    with pytest.raises(rk.errors.ParameterError, match="one wavelength"):
+        rk.diagnose_function(ggx, rk.bsdf("lambert", reflectance=(0.2, 0.5)))
+    with pytest.raises(rk.errors.ParameterError, match="count"):
+        rk.diagnose_function(ggx, ggx, count=1)
+
+
+def test_an_unnormalised_half_vector_is_found_in_a_function():
+    model = rk.bsdf("blinn_phong", exponent=12.0)
+
+    def stretched(wi, wo):
+        return model(wi, wo) * np.linalg.norm(wi + wo, axis=-1) ** 12.0
+
+    assert_found(rk.diagnose_function(stretched, model), "half-vector-not-normalised-in-lobe")
+
+
+def test_a_wrong_normalisation_is_named_though_one_exponent_cannot_prove_it():
+    asked, given = (rk.bsdf("blinn_phong", exponent=12.0, normalization=name) for name in ("exact", "n+8"))
+    found = rk.diagnose_function(given, asked)
+    assert found.first.name == "lobe-normalisation"
+    assert found.first.detail == "(n+8)/(8π) ≠ (n+2)(n+4)/(8π(2^(-n/2)+n))"
+    assert found.first.confidence <= 0.5
+    assert found.notes[-1] == "inputs that differ in exponent would tell"
+
+
+def test_swapped_directions_are_found_in_a_function():
+    def brdf(wi, wo):
+        return 0.2 + wi[..., 2] ** 2 * wo[..., 2]
+
+    assert_found(rk.diagnose_function(lambda wi, wo: brdf(wo, wi), brdf), "directions-swapped")
+    reciprocal = rk.bsdf("ashikhmin_shirley")
+    assert rk.diagnose_function(lambda wi, wo: reciprocal(wo, wi), reciprocal).right
 
 
 def test_other_packages_add_their_own(world):

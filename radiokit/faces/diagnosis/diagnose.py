@@ -71,7 +71,7 @@ def diagnose(
     rtol : float, optional
         The relative deviation that rounding explains, in (0, 0.1]; 1e-6, or 2e-5 for answers in float32.
     catalogue : sequence of Misconception
-        What to look for.
+        What to look for; ``(*radiokit.faces.diagnosis.catalogue.CATALOGUE, mine)`` adds one.
 
     Returns
     -------

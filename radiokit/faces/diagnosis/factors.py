@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import permutations
 
 import numpy as np
 
@@ -13,19 +14,24 @@ __all__ = ["ENTRIES"]
 
 
 def _normalisations(n: Array) -> dict[str, Array]:
-    """Return every ratio of two normalisations of Phong's and Blinn's lobes.
+    """Return the ratios of two normalisations of Phong's and Blinn's lobes.
 
-    Source: Giesen (2009), Phong and Blinn-Phong normalization factors.
+    Source: Giesen (2009), Phong and Blinn-Phong normalization factors; (n+2)/(8π) is Walter et al. (2007).
     """
     known = {
         "no normalisation": np.ones_like(n),
         "(n+1)/(2π)": (n + 1) / (2 * math.pi),
         "(n+2)/(2π)": (n + 2) / (2 * math.pi),
+        "(n+2)/(8π)": (n + 2) / (8 * math.pi),
         "(n+8)/(8π)": (n + 8) / (8 * math.pi),
         "(n+2)(n+4)/(8π(2^(-n/2)+n))": (n + 2) * (n + 4) / (8 * math.pi * (np.exp2(-n / 2) + n)),
     }
+    # Those that begin alike, with n + 2, differ by a constant that has entries of its own.
+    alike = {"(n+2)/(2π)", "(n+2)/(8π)"}
     return {
-        f"{used} ≠ {meant}": known[used] / known[meant] for used in known for meant in known if used != meant
+        f"{used} ≠ {meant}": known[used] / known[meant]
+        for used, meant in permutations(known, 2)
+        if {used, meant} != alike
     }
 
 
@@ -227,6 +233,40 @@ ENTRIES: tuple[Misconception, ...] = (
         "one asked).",
         "Вы нормировали лепесток Фонга или Блинна не тем множителем (ваш ≠ нужный).",
         needs=("exponent",),
+        pairs=False,
+    ),
+    varying(
+        "viewer-cosine-forgotten",
+        lambda wo: 1 / wo[:, 2],
+        "You forgot the cosine at the viewer, cos θo.",
+        "Вы забыли косинус со стороны наблюдателя, cos θo.",
+        needs=("wo",),
+    ),
+    varying(
+        "viewer-cosine-twice",
+        lambda wo: wo[:, 2],
+        "You have the cosine at the viewer, cos θo, once too often, or in place of a division by it.",
+        "У вас лишний косинус со стороны наблюдателя, cos θo, или нет деления на него.",
+        needs=("wo",),
+    ),
+    varying(
+        "microfacet-denominator",
+        lambda wi, wo: {
+            "4 cos θi cos θo": 4 * wi[:, 2] * wo[:, 2],
+            "cos θi cos θo": wi[:, 2] * wo[:, 2],
+        },
+        "You forgot the denominator of a microfacet BRDF, or a part of it: f = D·G·F/(4 cos θi cos θo).",
+        "Вы забыли знаменатель микрофасетной BRDF или его часть: f = D·G·F/(4 cos θi cos θo).",
+        needs=("wi", "wo"),
+        pairs=False,
+    ),
+    varying(
+        "pdf-of-half-vector",
+        # wo·h = |wi + wo|/2, so that 4 wo·h = 2 |wi + wo|.
+        lambda wi, wo: 2 * np.linalg.norm(wi + wo, axis=-1),
+        "Your pdf is that of the half vector: per solid angle of wi it is p(h)/(4 wo·h).",
+        "Ваша плотность относится к полувектору: на телесный угол wi она равна p(h)/(4 wo·h).",
+        needs=("wi", "wo"),
         pairs=False,
     ),
     varying(
