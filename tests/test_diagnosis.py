@@ -480,6 +480,8 @@ def test_other_packages_add_their_own(world):
         ({"answer": [1.0]}, "answer"),
         ({"answer": [[1.0, 2.0]]}, "answer"),
         ({"answer": ["a", "b"]}, "answer"),
+        ({"answer": [1.0, [2.0, 3.0]]}, "answer"),
+        ({"answer": []}, "answer"),
         ({"reference": [1.0, math.nan]}, "reference"),
         ({"inputs": {"theta": [1, 2, 3]}}, "theta"),
         ({"inputs": {"pdf": math.inf}}, "pdf"),

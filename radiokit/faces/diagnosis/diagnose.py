@@ -13,7 +13,8 @@ import numpy.typing as npt
 
 from radiokit.faces.diagnosis.catalogue import CATALOGUE
 from radiokit.faces.diagnosis.misconception import LANGUAGES, Guess, Misconception, structural
-from radiokit.faces.diagnosis.problem import SHARE, Array, Problem, columns
+from radiokit.faces.diagnosis.problem import SHARE, Problem
+from radiokit.faces.diagnosis.reading import read
 from radiokit.faces.diagnosis.result import TEXTS, Diagnosis, Suspicion
 from radiokit.facts.errors import ParameterError
 
@@ -95,10 +96,10 @@ def diagnose(
     """
     if language not in LANGUAGES:
         raise ParameterError("language", language, " or ".join(map(repr, LANGUAGES)))
-    problem = _problem(answer, reference, inputs or {}, variants, error, rtol)
+    problem = read(answer, reference, inputs or {}, variants, error, rtol)
     text = TEXTS[language]
     entries = (*catalogue, *_variant_entries(variants, catalogue))
-    seen = [fit for entry in entries if entry.seen for fit in _fits(problem, entry, -1.0)]
+    seen, _ = _fits(problem, [entry for entry in entries if entry.seen], -1.0)
     suspicions = [_suspicion(fit, 1.0, language) for fit in seen]
     largest = np.maximum(np.abs(problem.reference), 1e-13 * problem.scale + 1e-300)
     deviations = np.abs(problem.answer - problem.reference) / largest
@@ -117,50 +118,6 @@ def diagnose(
     suspicions += inferred
     summary = text["wrong" if suspicions else "unknown"]
     return Diagnosis(False, summary, tuple(suspicions), deviation, ambiguous, tuple(notes), language)
-
-
-def _numbers(name: str, given: Any) -> Array:
-    try:
-        array: Array = np.atleast_1d(np.asarray(given, dtype=float))
-    except (TypeError, ValueError):
-        raise ParameterError(name, given, "real numbers") from None
-    if array.ndim != 1 or not array.size:
-        raise ParameterError(name, given, f"of shape (N,), not {array.shape}")
-    return array
-
-
-def _problem(
-    answer: Any, reference: Any, inputs: Mapping[str, Any], variants: Any, error: Any, rtol: float | None
-) -> Problem:
-    coarse = getattr(np.asarray(answer), "dtype", None) == np.float32
-    rtol = (2e-5 if coarse else 1e-6) if rtol is None else float(rtol)
-    if not 0 < rtol <= 0.1:
-        raise ParameterError("rtol", rtol, "in (0, 0.1]")
-    right, given = _numbers("reference", reference), _numbers("answer", answer)
-    if not np.all(np.isfinite(right)):
-        raise ParameterError("reference", reference, "finite")
-    if given.shape != right.shape:
-        raise ParameterError("answer", answer, f"of the reference's shape {right.shape}, not {given.shape}")
-    try:
-        spread = np.broadcast_to(np.asarray(0.0 if error is None else error, dtype=float), right.shape)
-    except (TypeError, ValueError):
-        raise ParameterError("error", error, f"numbers that broadcast to {right.shape}") from None
-    finite = np.isfinite(given)
-    if not np.all(spread[finite] >= 0) or not np.all(np.isfinite(spread[finite])):
-        raise ParameterError("error", error, "finite and at least 0")
-    rows = {name: values[finite] for name, values in columns(inputs, right.size).items()}
-    if isinstance(variants, Mapping):
-        variants = {name: values[finite] for name, values in _variant_columns(variants, right.size).items()}
-    index, lost = np.flatnonzero(finite), np.flatnonzero(~finite)
-    return Problem(given[finite], right[finite], rows, variants, spread[finite], rtol, index, lost)
-
-
-def _variant_columns(variants: Mapping[str, Any], count: int) -> dict[str, Array]:
-    found = {name: _numbers(f"variants[{name!r}]", values) for name, values in variants.items()}
-    for name, values in found.items():
-        if values.shape != (count,):
-            raise ParameterError(f"variants[{name!r}]", variants[name], f"of shape ({count},)")
-    return found
 
 
 def _variant_entries(variants: Any, catalogue: Sequence[Misconception]) -> list[Misconception]:
@@ -183,14 +140,19 @@ def _variant_entries(variants: Any, catalogue: Sequence[Misconception]) -> list[
     return [entry(name) for name in variants]
 
 
-def _fits(problem: Problem, entry: Misconception, baseline: float) -> list[_Fit]:
-    """Return the best way in which an entry explains the answers better than the reference does, if any."""
-    best: _Fit | None = None
-    for guess in entry.explain(problem):
-        share = 1.0 if entry.seen else problem.share(guess.values, entry.slack)
-        if share >= SHARE and share > max(baseline, best.share if best else 0.0):
-            best = _Fit((entry,), guess, share, entry.prior)
-    return [best] if best else []
+def _fits(problem: Problem, entries: Iterable[Misconception], baseline: float) -> tuple[list[_Fit], int]:
+    """Return each entry's best guess that explains more than the reference does, and how many were tried."""
+    found, tried = [], 0
+    for entry in entries:
+        best: _Fit | None = None
+        for guess in entry.explain(problem):
+            tried += 1
+            share = 1.0 if entry.seen else problem.share(guess.values, entry.slack)
+            if share >= SHARE and share > max(baseline, best.share if best else 0.0):
+                best = _Fit((entry,), guess, share, entry.prior)
+        if best:
+            found.append(best)
+    return found, tried
 
 
 def _pairs(problem: Problem, entries: Sequence[Misconception], baseline: float) -> tuple[list[_Fit], int]:
@@ -218,7 +180,7 @@ def _pairs(problem: Problem, entries: Sequence[Misconception], baseline: float) 
 
 def _hidden(problem: Problem, entries: Sequence[Misconception]) -> list[str]:
     """Return the common factors that sampled answers which agree cannot rule out."""
-    fits = [fit for entry in entries if entry.pairs for fit in _fits(problem, entry, -1.0)]
+    fits, _ = _fits(problem, [entry for entry in entries if entry.pairs], -1.0)
     return [fit.name for fit in fits]
 
 
@@ -228,9 +190,10 @@ def _infer(
     """Return the suspicions, the names that stay ambiguous, and what else is to be said."""
     text = TEXTS[language]
     baseline = problem.share(problem.reference)
-    fits = [fit for entry in entries for fit in _fits(problem, entry, baseline)]
+    fits, tried = _fits(problem, entries, baseline)
+    # How many of the tried would fit a wrong answer by chance, if its factor may be anything in RANGE.
     width = 2 * problem.resolution(problem.answer) / RANGE
-    chance = width * len(entries)
+    chance = width * tried
     if not fits and np.count_nonzero(problem.answer) >= FEWEST_FOR_PAIRS:
         fits, tried = _pairs(problem, entries, baseline)
         chance = PAIR_PRIOR * width * tried
