@@ -22,6 +22,12 @@ from .contracts.occluder import occluder as occluder
 from .contracts.parameters import parameter as parameter
 from .contracts.scalar import Kernels as Kernels
 from .contracts.scalar import ScalarBSDF as ScalarBSDF
+from .faces.diagnosis.catalogue import list_misconceptions as list_misconceptions
+from .faces.diagnosis.diagnose import diagnose as diagnose
+from .faces.diagnosis.function import diagnose_function as diagnose_function
+from .faces.diagnosis.misconception import Misconception as Misconception
+from .faces.diagnosis.result import Diagnosis as Diagnosis
+from .faces.diagnosis.result import Suspicion as Suspicion
 from .faces.modeltable import models_table as models_table
 from .faces.plots.lobe import save_lobe as save_lobe
 from .faces.plots.lobe import show_lobe as show_lobe

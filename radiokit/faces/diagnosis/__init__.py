@@ -1,0 +1,1 @@
+"""Diagnosis: what misconception a wrong answer betrays; the catalogue has one entry for each."""
