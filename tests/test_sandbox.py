@@ -58,6 +58,10 @@ sampled.sample, sampled.pdf = sample, lambda wi, wo: wi[:, 2].clip(0) / np.pi
 def short(wi, wo):
     return np.ones((2, 2, 2))
 
+def prints(wi, wo):
+    print("debugging", len(wi))
+    return lambert(wi, wo)
+
 def raises(wi, wo):
     raise ZeroDivisionError("oh no")
 """
@@ -220,8 +224,11 @@ def test_a_scalar_function_is_sent_blocks(honest, monkeypatch):
     calls = []
     request = honest._request
     monkeypatch.setattr(honest, "_request", lambda *a, **k: calls.append(a) or request(*a, **k))
-    f.evaluate(np.tile([0.0, 0.0, 1.0], (500, 1)), np.tile([0.0, 0.6, 0.8], (500, 1)))
-    assert len(calls) == 1
+    wi, wo = np.tile([0.0, 0.0, 1.0], (5000, 1)), np.tile([0.0, 0.6, 0.8], (5000, 1))
+    values = f.evaluate(wi, wo)
+    assert values.shape == (5000,)
+    assert np.all(values == values[0])
+    assert len(calls) == 2
 
 
 def test_what_a_remote_function_does_wrong_is_said_as_of_a_local_one(honest):
@@ -231,6 +238,7 @@ def test_what_a_remote_function_does_wrong_is_said_as_of_a_local_one(honest):
         remote_bsdf(honest, "short")
     with pytest.raises(TargetError, match=r"no function 'lamber'; did you mean 'lambert'\? It defines: lam"):
         remote_bsdf(honest, "lamber")
+    assert "prints prints: debugging 5" in remote_bsdf(honest, "prints").notes
 
 
 @pytest.mark.parametrize(

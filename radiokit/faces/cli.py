@@ -176,10 +176,12 @@ def check(
 
     with ExitStack() as stack:
         if isolated:
+            from radiokit.faces.grading.limits import Limits
             from radiokit.faces.grading.remote import open_isolated
             from radiokit.faces.targets import parse_parameters
 
-            model = stack.enter_context(open_isolated(target, parse_parameters(context.args)))
+            given = parse_parameters(context.args)
+            model = stack.enter_context(open_isolated(target, given, Limits(seconds=seconds)))
         else:
             model = _load(target, context)
         progress = stack.enter_context(progress_bar("checking", not json))

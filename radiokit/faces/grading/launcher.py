@@ -9,7 +9,7 @@ standard library alone, and nothing that the submission wrote.
 from __future__ import annotations
 
 import contextlib
-import ctypes
+import importlib.util
 import json
 import os
 import resource
@@ -22,111 +22,21 @@ from typing import Any, NoReturn
 
 __all__: list[str] = []
 
-NEWNS, NEWUTS, NEWIPC, NEWUSER, NEWPID, NEWNET = (
-    0x00020000,
-    0x04000000,
-    0x08000000,
-    0x10000000,
-    0x20000000,
-    0x40000000,
-)
-MS_NOSUID, MS_NODEV, MS_BIND, MS_REC, MS_PRIVATE = 2, 4, 4096, 16384, 1 << 18
-MNT_DETACH = 2
-AT_FDCWD, AT_RECURSIVE, SYS_MOUNT_SETATTR = -100, 0x8000, 442
-ATTR_RDONLY, ATTR_NOSUID = 1, 2
-PR_SET_PDEATHSIG, PR_CAPBSET_DROP, PR_SET_CHILD_SUBREAPER, PR_SET_NO_NEW_PRIVS = 1, 24, 36, 38
 FAILED = 97
 """Exit code when the walls that were asked for cannot be built here."""
 
-_libc = ctypes.CDLL(None, use_errno=True)
+
+def _beside(name: str) -> Any:
+    """Import a file of this folder, which is on no path."""
+    spec = importlib.util.spec_from_file_location(name, Path(__file__).with_name(f"{name}.py"))
+    if spec is None or spec.loader is None:
+        raise ImportError(f"cannot import {name}")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
-def _call(name: str, *arguments: Any) -> None:
-    """Call a function of the C library; OSError when it is missing or fails."""
-    function = getattr(_libc, name, None)
-    if function is None:
-        raise OSError(f"no {name} here")
-    if function(*arguments) != 0:
-        code = ctypes.get_errno()
-        raise OSError(code, f"{name}: {os.strerror(code)}")
-
-
-def _try(name: str, *arguments: Any) -> bool:
-    try:
-        _call(name, *arguments)
-    except OSError:
-        return False
-    return True
-
-
-def _mount(source: str, target: str, kind: str, flags: int, options: str = "") -> None:
-    _call("mount", source.encode(), target.encode(), kind.encode(), ctypes.c_ulong(flags), options.encode())
-
-
-def _unshare() -> bool:
-    """Enter namespaces of our own; return whether the user namespace is one of them."""
-    flags = NEWNS | NEWUTS | NEWIPC | NEWPID | NEWNET
-    uid, gid = os.geteuid(), os.getegid()
-    if uid == 0 and _try("unshare", flags):
-        return False
-    _call("unshare", flags | NEWUSER)
-    with contextlib.suppress(OSError):
-        Path("/proc/self/setgroups").write_text("deny", encoding="ascii")
-    Path("/proc/self/uid_map").write_text(f"{uid} {uid} 1", encoding="ascii")
-    Path("/proc/self/gid_map").write_text(f"{gid} {gid} 1", encoding="ascii")
-    return True
-
-
-def _read_only(target: str) -> None:
-    attributes = (ctypes.c_uint64 * 4)(ATTR_RDONLY | ATTR_NOSUID, 0, 0, 0)
-    _call(
-        "syscall",
-        ctypes.c_long(SYS_MOUNT_SETATTR),
-        ctypes.c_int(AT_FDCWD),
-        ctypes.c_char_p(target.encode()),
-        ctypes.c_uint(AT_RECURSIVE),
-        attributes,
-        ctypes.c_size_t(32),
-    )
-
-
-def _new_root(spec: dict[str, Any]) -> bool:
-    """Make the box the root: of the old one only what is visible, to read; return whether /proc is there."""
-    box = spec["box"]
-    _mount("none", "/", "none", MS_REC | MS_PRIVATE)
-    size = f"size={spec['limits']['disk_bytes']},nr_inodes={spec['limits']['inodes']},mode=755"
-    _mount("tmpfs", box, "tmpfs", MS_NOSUID | MS_NODEV, size)
-    for path in spec["visible"]:
-        source, target = Path(path), Path(box + path)
-        if source.is_symlink() and source.parent == Path("/"):
-            target.symlink_to(source.readlink())
-            continue
-        if not source.exists() or target.exists():
-            continue
-        target.parent.mkdir(parents=True, exist_ok=True)
-        if source.is_dir():
-            target.mkdir()
-        else:
-            target.touch()
-        _mount(path, str(target), "none", MS_BIND | MS_REC)
-        _read_only(str(target))
-    for path in spec["hidden"]:
-        if Path(box + path).is_dir():
-            _mount("tmpfs", box + path, "tmpfs", MS_NOSUID | MS_NODEV, "size=4k,mode=555")
-    for path in ("/proc", "/home", "/tmp", "/dev/shm"):
-        Path(box + path).mkdir(parents=True, exist_ok=True)
-    for path in ("/tmp", "/dev/shm"):
-        Path(box + path).chmod(0o1777)
-    proc = True
-    try:
-        _mount("proc", f"{box}/proc", "proc", MS_NOSUID | MS_NODEV)
-    except OSError:
-        proc = False
-    os.chdir(box)
-    _call("pivot_root", b".", b".")
-    _call("umount2", b".", MNT_DETACH)
-    os.chdir("/")
-    return proc
+namespaces = _beside("namespaces")
 
 
 def _threads(uid: int) -> int:
@@ -177,7 +87,7 @@ def _give_up_rights(spec: dict[str, Any], home: str, own_users: bool) -> list[st
     """Become nobody in particular, for good; return what was given up."""
     done = []
     for capability in range(64):
-        _try("prctl", PR_CAPBSET_DROP, capability, 0, 0, 0)
+        namespaces.control(namespaces.PR_CAPBSET_DROP, capability)
     uid = spec["uid"]
     if os.geteuid() == 0 and not own_users:
         os.setgroups([])
@@ -186,9 +96,9 @@ def _give_up_rights(spec: dict[str, Any], home: str, own_users: bool) -> list[st
             os.setresgid(uid, uid, uid)
             os.setresuid(uid, uid, uid)
             done.append("user")
-    if _try("prctl", PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0):
+    if namespaces.control(namespaces.PR_SET_NO_NEW_PRIVS, 1):
         done.append("privileges")
-    _try("prctl", PR_SET_PDEATHSIG, int(signal.SIGKILL), 0, 0, 0)
+    namespaces.control(namespaces.PR_SET_PDEATHSIG, int(signal.SIGKILL))
     return done
 
 
@@ -232,11 +142,12 @@ def _start(spec: dict[str, Any], files: dict[str, bytes], own_users: bool, activ
     os.execve(spec["python"], words, environment)
 
 
-def _clear(child: int | None, deadline: float) -> None:
+def _clear(child: int, deadline: float) -> None:
     """Kill every descendant: orphans become our children, as we are their reaper."""
     me = os.getpid()
-    if child is not None:
-        os.kill(child, signal.SIGKILL)
+    with contextlib.suppress(ProcessLookupError):
+        if os.waitid(os.P_PID, child, os.WEXITED | os.WNOHANG | os.WNOWAIT) is None:
+            os.kill(child, signal.SIGKILL)
     while time.monotonic() < deadline:
         with contextlib.suppress(OSError):
             for pid in Path(f"/proc/{me}/task/{me}/children").read_text().split():
@@ -248,34 +159,35 @@ def _clear(child: int | None, deadline: float) -> None:
             return
 
 
-def _wait(pid: int) -> int:
-    """Wait for a child, reaping others; return how it ended, as a shell says it."""
+def _wait(child: int) -> int:
+    """Wait for a process, and bury the others that end; return how it ended, as a shell says it."""
     while True:
         found, status = os.wait()
-        if found == pid:
+        if found == child:
             code = os.waitstatus_to_exitcode(status)
             return code if code >= 0 else 128 - code
 
 
-def _watch() -> None:
-    """Return when a child has ended; end when the sandbox has: then our standard input closes."""
+def _watch(child: int) -> int:
+    """Wait until the child ends, or SIGTERM comes, or the sandbox is gone: then our standard input closes.
+
+    Signals do no more than write into a pipe, so that none can come between this and clearing up.
+    """
     read, write = os.pipe()
     os.set_blocking(write, False)
-    signal.set_wakeup_fd(write)
-    signal.signal(signal.SIGCHLD, lambda signum, frame: None)
-    with contextlib.suppress(ChildProcessError):
-        if os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOHANG | os.WNOWAIT):
-            return
+    signal.set_wakeup_fd(write, warn_on_full_buffer=False)
+    for number in (signal.SIGTERM, signal.SIGCHLD):
+        signal.signal(number, lambda signum, frame: None)
     poll = select.poll()
     poll.register(0, 0)
     poll.register(read, select.POLLIN)
-    if any(descriptor == 0 for descriptor, _ in poll.poll()):
-        raise SystemExit(FAILED)
-
-
-def _stop(signum: int, frame: object) -> None:
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)
-    raise SystemExit(128 + signum)
+    while True:
+        ended = os.waitid(os.P_PID, child, os.WEXITED | os.WNOHANG | os.WNOWAIT)
+        if ended is not None:
+            return ended.si_status + (0 if ended.si_code == os.CLD_EXITED else 128)
+        ready = [descriptor for descriptor, _ in poll.poll()]
+        if 0 in ready or signal.SIGTERM in os.read(read, 512):
+            return FAILED
 
 
 def _fail(error: Exception) -> NoReturn:
@@ -285,10 +197,9 @@ def _fail(error: Exception) -> NoReturn:
 
 def _inside(spec: dict[str, Any], files: dict[str, bytes], own_users: bool) -> NoReturn:
     """Be the first process of the namespaces: when it ends, all of them end."""
-    _try("prctl", PR_SET_PDEATHSIG, int(signal.SIGKILL), 0, 0, 0)
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    namespaces.control(namespaces.PR_SET_PDEATHSIG, int(signal.SIGKILL))
     try:
-        active = ["processes", "network", "root"] + (["proc"] if _new_root(spec) else [])
+        active = ["processes", "network", "root"] + (["proc"] if namespaces.new_root(spec) else [])
         child = os.fork()
         if child == 0:
             _start(spec, files, own_users, active)
@@ -303,28 +214,21 @@ def _main() -> None:
     os.set_inheritable(spec["results"], True)
     files = {name: Path(path).read_bytes() for name, path in spec["files"].items()}
     spec["threads"] = {str(uid): _threads(uid) for uid in {os.getuid(), spec["uid"]}}
-    reaper = _try("prctl", PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
-    signal.signal(signal.SIGTERM, _stop)
+    reaper = namespaces.control(namespaces.PR_SET_CHILD_SUBREAPER, 1)
     try:
-        own_users = _unshare() if spec["namespaces"] else False
+        own_users = namespaces.unshare() if spec["namespaces"] else False
         child = os.fork()
         if child == 0 and spec["namespaces"]:
             _inside(spec, files, own_users)
         if child == 0:
-            signal.signal(signal.SIGTERM, signal.SIG_DFL)
             _start(spec, files, False, ["processes"] if reaper else [])
     except Exception as error:
         _fail(error)
     for descriptor in (1, 2, spec["results"]):
         os.close(descriptor)
-    code: int = FAILED
-    left: int | None = child
-    try:
-        _watch()
-        code, left = _wait(child), None
-    finally:
-        _clear(left, time.monotonic() + 2)
-        os._exit(code)
+    code = _watch(child)
+    _clear(child, time.monotonic() + 2)
+    os._exit(code)
 
 
 if __name__ == "__main__":

@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 import dataclasses
+import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from radiokit.contracts.blackbox import BlackBox, as_bsdf
 from radiokit.contracts.bsdf import BSDF, FloatArray
 from radiokit.contracts.calling import Mode
 from radiokit.faces.grading.limits import Limits
+from radiokit.faces.grading.protocol import plain_text
 from radiokit.faces.grading.sandbox import Sandbox
 from radiokit.facts.errors import CallableError, TargetError, suggestion
 
 __all__ = ["open_isolated", "remote_bsdf"]
+
+BLOCK = 4096
+"""How many pairs are sent at a time to a function that takes one, so that each call ends in time."""
 
 
 class _Remote:
@@ -32,7 +39,15 @@ class _Remote:
         return _Remote(self._sandbox, self._name, self._parameters, mode)
 
     def __call__(self, first: FloatArray, second: FloatArray) -> Any:
+        if self._mode == "batch" or len(first) <= BLOCK:
+            return self._ask(first, second)
+        parts = [slice(start, start + BLOCK) for start in range(0, len(first), BLOCK)]
+        return np.concatenate([self._ask(first[part], second[part]) for part in parts])
+
+    def _ask(self, first: FloatArray, second: FloatArray) -> Any:
         result = self._sandbox.call(self._name, first, second, mode=self._mode, parameters=self._parameters)
+        if result.output:  # printed here too: the black box takes note of it
+            sys.stdout.write(plain_text(result.output) + "\n")
         if result.raised:  # raised here too, so that the pair that did it is looked for
             kind = type(result.raised if result.raised.isidentifier() else "Exception", (Exception,), {})
             raise kind(result.error.removeprefix(f"raised {result.raised}").removeprefix(": "))
@@ -99,7 +114,7 @@ def remote_bsdf(sandbox: Sandbox, function: str, *, parameters: Mapping[str, Any
 
 @contextmanager
 def open_isolated(target: str, parameters: Mapping[str, Any], limits: Limits | None = None) -> Iterator[BSDF]:
-    """Open a sandbox for ``file.py:function``, and yield the function as a BSDF.
+    """Open a sandbox for ``file.py:function``, and yield the function as a BSDF; the file must stand alone.
 
     Raises
     ------

@@ -21,6 +21,7 @@ class Result:
     one line what the function did instead, as in "took longer than 1 s". ``raised`` is the exception's type
     where it raised one. ``output`` is the beginning of what it printed. ``protections`` were active during
     the call, ``missing`` were not, see ``PROTECTIONS``. ``seconds`` is wall time, a child's start included.
+    ``facts`` are what ``Sandbox.facts`` asked for.
     """
 
     values: tuple[Array, ...] = ()

@@ -174,7 +174,7 @@ class Sandbox:
                 self._start()
             token = secrets.token_hex(8)
             asked = pack({"id": token, "file": self._name, "function": function, **request}, arrays)
-            header, values = self._exchange(asked, timeout or self.limits.seconds)
+            header, values = self._exchange(asked, self.limits.seconds if timeout is None else timeout)
             found = judged(header, values, token)
         except (_StoppedError, MalformedError) as error:
             malformed = isinstance(error, MalformedError)
@@ -314,8 +314,9 @@ class Sandbox:
         except subprocess.TimeoutExpired:
             return "closed its channel of answers"
         self._drain()
-        if code > 128 and code - 128 in set(signal.Signals):
-            return f"was ended by {signal.Signals(code - 128).name}"
+        number = -code if code < 0 else code - 128
+        if number in set(signal.Signals):
+            return f"was ended by {signal.Signals(number).name}"
         return f"ended its process with exit code {code}"
 
 
