@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -75,13 +76,23 @@ def check(
     law: Annotated[list[str] | None, typer.Option(help="Only this law; may be repeated.")] = None,
     tolerance: Annotated[float, typer.Option(help="How far beyond a limit a value may lie.")] = 1e-9,
     seconds: Annotated[float, typer.Option(help="Time aimed at for a slow function.")] = 60.0,
+    isolated: Annotated[bool, typer.Option("--isolated", help="Run file.py:function in a sandbox.")] = False,
 ) -> None:
     """Check a BSDF for reciprocity, energy conservation and more; its parameters go as --NAME VALUE."""
     from radiokit.checks.judge import LAWS
     from radiokit.checks.judge import check as judge
 
-    model = _load(target, context)
-    with progress_bar("checking", not json) as progress:
+    with ExitStack() as stack:
+        if isolated:
+            from radiokit.faces.grading.limits import Limits
+            from radiokit.faces.grading.remote import open_isolated
+            from radiokit.faces.targets import parse_parameters
+
+            given = parse_parameters(context.args)
+            model = stack.enter_context(open_isolated(target, given, Limits(seconds=seconds)))
+        else:
+            model = _load(target, context)
+        progress = stack.enter_context(progress_bar("checking", not json))
         report = judge(model, laws=law or LAWS, tolerance=tolerance, seconds=seconds, progress=progress)
     if json:
         show_json(report.to_json())

@@ -1,0 +1,1 @@
+"""Grading: running code that is not trusted, apart from everything that it must not reach."""

@@ -1,0 +1,81 @@
+"""Limits: what a sandbox allows, and the names of the protections that may hold in it."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+
+from radiokit.facts.errors import ParameterError
+
+__all__ = ["PROTECTIONS", "Limits"]
+
+PROTECTIONS = {
+    "limits": "processor time, memory, processes, open files and file sizes are limited",
+    "processes": "no process outlives the sandbox",
+    "privileges": "no program can raise its rights",
+    "user": "it runs as a user who owns nothing",
+    "network": "there is no network",
+    "root": "of the file system only Python and the submission are there, the rest of the disk is not",
+    "proc": "other processes cannot be seen",
+}
+"""What can be active, by name. Linux has them all where it grants namespaces; elsewhere some are missing."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limits:
+    """What the code in a sandbox may use; all positive integers but ``seconds``.
+
+    Parameters
+    ----------
+    seconds : float
+        Wall time of one call, the first one's import included [s], above 0.
+    cpu_seconds : int
+        Processor time of one child over all its calls [s].
+    memory_bytes : int
+        Address space of each process.
+    processes : int
+        Processes and threads at a time.
+    open_files : int
+        Open files of each process; at least 64.
+    file_bytes : int
+        Size of each file.
+    disk_bytes : int
+        Size of all files together, where the file system is the sandbox's own.
+    inodes : int
+        Number of files, likewise; at least 1024.
+    printed_bytes : int
+        What it may print in one call, before it is stopped.
+    answer_bytes : int
+        Size of one answer.
+
+    Raises
+    ------
+    ParameterError
+        When a limit is not such a number.
+
+    >>> Limits(processes=0)
+    Traceback (most recent call last):
+        ...
+    radiokit.facts.errors.ParameterError: processes = 0 is not allowed: it must be an integer of at least 1
+    """
+
+    seconds: float = 10.0
+    cpu_seconds: int = 3600
+    memory_bytes: int = 1 << 31
+    processes: int = 16
+    open_files: int = 128
+    file_bytes: int = 1 << 24
+    disk_bytes: int = 1 << 25
+    inodes: int = 4096
+    printed_bytes: int = 1 << 20
+    answer_bytes: int = 1 << 28
+
+    def __post_init__(self) -> None:
+        least = {"open_files": 64, "inodes": 1024}
+        for field in dataclasses.fields(self):
+            value = getattr(self, field.name)
+            if field.name == "seconds":
+                if not (isinstance(value, int | float) and 0 < value < float("inf")):
+                    raise ParameterError("seconds", value, "a finite number above 0")
+            elif type(value) is not int or value < least.get(field.name, 1):
+                raise ParameterError(field.name, value, f"an integer of at least {least.get(field.name, 1)}")
