@@ -81,7 +81,10 @@ def test_the_box_under_its_panel():
     picture = render("box", size=8)
     assert picture.values.shape == (8, 8, 3)
     assert not picture.statistical.any()
-    assert picture.worst_error < 1e-12
+    dark = picture.values.max(axis=-1) == 0  # the ceiling, in whose plane the panel lies
+    assert dark.sum() == dark[0].sum() == 8
+    assert picture.error[~dark].max() < 1e-13
+    assert picture.error[dark].max() < 2e-13  # a rounded point may be a hair below the plane
     left, right = picture.values[4, 0], picture.values[4, 7]
     assert left[0] > 3 * left[1]  # red
     assert right[1] > 2 * right[0]  # green
