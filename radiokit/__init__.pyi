@@ -22,6 +22,7 @@ from .contracts.occluder import occluder as occluder
 from .contracts.parameters import parameter as parameter
 from .contracts.scalar import Kernels as Kernels
 from .contracts.scalar import ScalarBSDF as ScalarBSDF
+from .faces import grading as grading
 from .faces.diagnosis.catalogue import list_misconceptions as list_misconceptions
 from .faces.diagnosis.diagnose import diagnose as diagnose
 from .faces.diagnosis.function import diagnose_function as diagnose_function

@@ -1,0 +1,207 @@
+"""Grader: runs a submission in its sandbox, question by question, and says what each one earned."""
+
+from __future__ import annotations
+
+import difflib
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from radiokit.contracts.bsdf import BSDF
+from radiokit.faces.grading.assignment import Assignment, load_assignment, student_rng
+from radiokit.faces.grading.finding import Finding, Mode
+from radiokit.faces.grading.grades import Grade, PartGrade, QuestionGrade
+from radiokit.faces.grading.protocol import Array, plain_text
+from radiokit.faces.grading.question import Part, Question
+from radiokit.faces.grading.remote import remote_bsdf
+from radiokit.faces.grading.result import Result
+from radiokit.faces.grading.sandbox import Sandbox
+from radiokit.faces.grading.words import checked_language, say
+from radiokit.facts.errors import CallableError, TargetError
+
+__all__ = ["Isolated", "grade"]
+
+
+@dataclass(frozen=True)
+class Isolated:
+    """A student's function in a sandbox."""
+
+    sandbox: Sandbox
+    name: str
+
+    def call(self, *arrays: Array, mode: Mode = "batch", outputs: int = 1, seed: int | None = None) -> Result:
+        """Call it; whatever it does, a result comes back."""
+        return self.sandbox.call(self.name, *arrays, mode=mode, outputs=outputs, seed=seed)
+
+    def bsdf(self, parameters: Mapping[str, Any] | None = None) -> BSDF:
+        """Return it as a BSDF."""
+        return remote_bsdf(self.sandbox, self.name, parameters=parameters)
+
+    def other(self, name: str) -> Isolated:
+        """Return another function of the same submission."""
+        return Isolated(self.sandbox, name)
+
+
+def grade(
+    assignment: str | Path | Assignment,
+    submission: str | Path,
+    *,
+    student: str = "",
+    secret: str = "",
+    language: str = "en",
+    earlier: Grade | None = None,
+    keep: Callable[[Grade], None] | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Grade:
+    """Grade a submission.
+
+    Its code runs in a sandbox and is handed inputs alone; references and points stay in this process.
+
+    Parameters
+    ----------
+    assignment : str, Path or Assignment
+        A name among ``list_assignments()``, or a file of your own.
+    submission : str or Path
+        A script or a notebook.
+    student : str
+        Who; each student has inputs of his own.
+    secret : str
+        What makes the inputs unforeseeable; keep it between runs, for they depend on it.
+    language : str
+        ``"en"`` or ``"ru"``.
+    earlier : Grade, optional
+        An incomplete grade of the same submission: its questions are not graded again.
+    keep : callable, optional
+        Called with the grade so far, after each question.
+    progress : callable, optional
+        Called with the number of finished questions and of all, before each.
+
+    Returns
+    -------
+    Grade
+        The same in every run, if the submission's functions are. Nothing that the submission does is
+        raised here.
+
+    Raises
+    ------
+    RadiokitError
+        When the assignment or the submission is not there, or no sandbox can be started.
+    """
+    work = load_assignment(assignment)
+    checked_language(language)
+    done = {question.name: question for question in earlier.questions} if earlier is not None else {}
+    grades: list[QuestionGrade] = []
+    result = Grade(
+        assignment=work.name,
+        title=work.title[language],
+        student=student,
+        language=language,
+        questions=(),
+        complete=False,
+    )
+    with Sandbox(submission, limits=work.limits) as sandbox:
+        loaded = sandbox.load()
+        names = list(loaded.facts.get("names", ())) if loaded.ok else []
+        problems = _problems(loaded, language)
+        result = replace(result, problems=problems, protections=loaded.protections, missing=loaded.missing)
+        seconds, measured = {}, {}
+        for question in work.questions:
+            if progress is not None:
+                progress(len(grades), len(work.questions))
+            began = time.monotonic()
+            if question.name in done:
+                grades.append(done[question.name])
+            else:
+                absent = _absent(sandbox, question, loaded, names, problems, language)
+                found, review, numbers = (
+                    ({part.name: absent for part in question.parts}, "", {})
+                    if absent is not None
+                    else _judged(sandbox, work, question, student, secret, language)
+                )
+                measured.update({f"{question.name}.{name}": value for name, value in numbers.items()})
+                grades.append(_graded(question, found, review, language))
+            seconds[question.name] = time.monotonic() - began
+            result = replace(
+                result,
+                questions=tuple(grades),
+                complete=len(grades) == len(work.questions),
+                seconds=seconds,
+                measured=measured,
+            )
+            if keep is not None:
+                keep(result)
+    return result
+
+
+def _judged(
+    sandbox: Sandbox, work: Assignment, question: Question, student: str, secret: str, language: str
+) -> tuple[dict[str, Finding], str, dict[str, float]]:
+    """Return the finding of each part, why a person should look, and what was measured."""
+    found: dict[str, Finding] = {}
+    review = ""
+    numbers: dict[str, float] = {}
+    for part in question.parts:
+        rng = student_rng(work, question, part, student=student, secret=secret)
+        shown = part.visibility == "visible"
+        try:
+            with sandbox.within(question.seconds):
+                finding = part.judge.judge(
+                    Isolated(sandbox, question.name),
+                    rng,
+                    language=language,
+                    hints=question.hints,
+                    shown=shown,
+                )
+        except (CallableError, TargetError) as error:
+            finding = Finding(share=0.0, text=plain_text(error))
+        except Exception as error:  # no answer may stop the grading: a person will look
+            review = plain_text(f"{type(error).__name__}: {error}")
+            finding = Finding(share=0.0, text=say(language, "judge-failed", error=review))
+        found[part.name] = finding
+        numbers.update({f"{part.name}.{name}": value for name, value in finding.measured.items()})
+    return found, review, numbers
+
+
+def _graded(question: Question, found: Mapping[str, Finding], review: str, language: str) -> QuestionGrade:
+    def graded(part: Part) -> PartGrade:
+        finding, points = found[part.name], question.worth(part)
+        return PartGrade(
+            name=part.name,
+            title=part.title[language],
+            score=points * min(max(finding.share, 0.0), 1.0),
+            points=points,
+            visibility=part.visibility,
+            text=plain_text(finding.text, 1000),
+            diagnosis=finding.diagnosis,
+            confidence=finding.confidence,
+        )
+
+    parts = tuple(graded(part) for part in question.parts)
+    return QuestionGrade(name=question.name, title=question.title[language], parts=parts, review=review)
+
+
+def _problems(loaded: Result, language: str) -> tuple[str, ...]:
+    if not loaded.ok:
+        return (say(language, "not-loaded", error=loaded.error),)
+    return tuple(say(language, "problem", **each) for each in loaded.facts.get("problems", ()))
+
+
+def _absent(
+    sandbox: Sandbox,
+    question: Question,
+    loaded: Result,
+    names: list[str],
+    problems: tuple[str, ...],
+    language: str,
+) -> Finding | None:
+    """Return why a question cannot be graded at all, if so."""
+    if not loaded.ok:
+        return Finding(share=0.0, text=problems[0])
+    if question.name in names or sandbox.facts(question.name).facts.get("callable"):
+        return None
+    close = difflib.get_close_matches(question.name, names, n=1, cutoff=0.6)
+    guess = say(language, "did-you-mean", name=close[0]) if close else ""
+    text = say(language, "no-function", function=question.name, guess=guess)
+    return Finding(share=0.0, text="; ".join([text, *problems[:1]]))

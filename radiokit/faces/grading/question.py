@@ -1,0 +1,158 @@
+"""Question: what an assignment asks for, as data: a function, its points, and the judges of its parts."""
+
+from __future__ import annotations
+
+import ast
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal, get_args
+
+from radiokit.faces.grading.finding import Judge
+from radiokit.faces.grading.words import Words, words
+from radiokit.facts.errors import ParameterError
+
+__all__ = ["PARTS", "Part", "Question", "Visibility"]
+
+Visibility = Literal["visible", "hidden", "after_due_date", "after_published"]
+
+PARTS: Mapping[str, Words] = {
+    "ordinary": {"en": "ordinary inputs", "ru": "обычные входы"},
+    "hard": {"en": "hard inputs", "ru": "трудные входы"},
+    "reciprocity": {"en": "reciprocity", "ru": "обратимость"},
+    "energy": {"en": "conservation of energy", "ru": "сохранение энергии"},
+    "normalisation": {"en": "normalisation", "ru": "нормировка"},
+    "honest": {"en": "honest standard error", "ru": "честная стандартная ошибка"},
+    "unbiased": {"en": "no bias", "ru": "несмещённость"},
+    "distribution": {"en": "distribution of the samples", "ru": "распределение выборки"},
+    "efficiency": {"en": "efficiency", "ru": "эффективность"},
+}
+"""Titles of parts by their usual names."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Part:
+    """One part of a question: what is judged, and what it weighs.
+
+    Parameters
+    ----------
+    name : str
+        Such as ``"ordinary"`` or ``"hard"``.
+    judge : Judge
+        ``Values``, ``Laws``, ``Estimator``, ``Sampler``, or one of your own.
+    weight : float
+        Its weight among the question's parts, above 0.
+    visibility : str
+        ``"visible"``: the student sees it at once, right values included; ``"hidden"``, ``"after_due_date"``,
+        ``"after_published"``: never, or later.
+    title : mapping, optional
+        ``{"en": ..., "ru": ...}``; the usual names have one.
+
+    Raises
+    ------
+    ParameterError
+        When an argument is out of its range.
+    """
+
+    name: str
+    judge: Judge
+    weight: float = 1.0
+    visibility: Visibility = "visible"
+    title: Words = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.weight, int | float) or not 0 < self.weight < math.inf:
+            raise ParameterError("weight", self.weight, "a finite number above 0")
+        if self.visibility not in get_args(Visibility):
+            raise ParameterError("visibility", self.visibility, ", ".join(get_args(Visibility)))
+        if not callable(getattr(self.judge, "judge", None)):
+            raise ParameterError("judge", self.judge, "an object with a method judge, such as Values(...)")
+        object.__setattr__(self, "title", words("title", self.title or PARTS.get(self.name, {})))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Question:
+    """One question: a function that the student writes.
+
+    Parameters
+    ----------
+    signature : str
+        Such as ``"solid_angle(half_angle)"``; the function's name is the question's.
+    points : float
+        Above 0; shared by the parts by their weights.
+    title, text : mapping
+        ``{"en": ..., "ru": ...}``, the text in Markdown with LaTeX.
+    parts : tuple of Part
+    hints : mapping
+        Further sentences ``{"en": ..., "ru": ...}`` by the misconception that they answer.
+    seconds : float
+        Wall time for all calls of one part together [s], above 0.
+
+    Raises
+    ------
+    ParameterError
+        When an argument is out of its range, or two parts have one name.
+
+    Examples
+    --------
+    >>> from radiokit.faces.grading.values import Values
+    >>> import numpy as np
+    >>> judge = Values(inputs=lambda rng: {"x": rng.random(8)}, reference=lambda x: x**2)
+    >>> both = {"en": "Square", "ru": "Квадрат"}
+    >>> square = Question(
+    ...     signature="square(x)",
+    ...     points=2,
+    ...     title=both,
+    ...     text=both,
+    ...     parts=(Part(name="ordinary", judge=judge),),
+    ... )
+    >>> square.name, square.parameters
+    ('square', ('x',))
+    """
+
+    signature: str
+    points: float
+    title: Words
+    text: Words
+    parts: tuple[Part, ...]
+    hints: Mapping[str, Words] = field(default_factory=dict)
+    seconds: float = 10.0
+
+    def __post_init__(self) -> None:
+        _function(self.signature)
+        for name in ("points", "seconds"):
+            value = getattr(self, name)
+            if not isinstance(value, int | float) or not 0 < value < math.inf:
+                raise ParameterError(name, value, "a finite number above 0")
+        words("title", self.title)
+        words("text", self.text)
+        for name, hint in self.hints.items():
+            words(f"hints[{name!r}]", hint)
+        names = [part.name for part in self.parts]
+        if not names or len(set(names)) != len(names):
+            raise ParameterError("parts", names, "at least one part, each of a name of its own")
+
+    @property
+    def name(self) -> str:
+        """The function's name."""
+        return _function(self.signature).name
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """The names of its parameters, in order."""
+        arguments = _function(self.signature).args
+        return tuple(each.arg for each in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs))
+
+    def worth(self, part: Part) -> float:
+        """Return how many of the points a part is worth."""
+        return self.points * part.weight / sum(each.weight for each in self.parts)
+
+
+def _function(signature: str) -> ast.FunctionDef:
+    try:
+        (found,) = ast.parse(f"def {signature}: pass").body
+    except (SyntaxError, TypeError, ValueError):
+        found = None  # type: ignore[assignment]
+    if not isinstance(found, ast.FunctionDef):
+        raise ParameterError("signature", signature, "as in 'solid_angle(half_angle)'")
+    return found
