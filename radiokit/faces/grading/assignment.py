@@ -1,4 +1,4 @@
-"""Assignment: a list of questions as data, from a file of an instructor's or among those that radiokit has."""
+"""Assignment: a list of questions as data, from an instructor's file or one that comes with radiokit."""
 
 from __future__ import annotations
 
