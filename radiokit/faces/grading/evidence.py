@@ -1,0 +1,105 @@
+"""Evidence: what is said of wrong numbers beside the misconception: how many, where, and what comes out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from radiokit.faces.grading.protocol import Array, plain_text
+from radiokit.faces.grading.words import say, sentence
+
+__all__ = ["LONGEST", "clause", "hint_for", "joined", "rows", "wrong_at"]
+
+LONGEST = 300
+"""How many characters a text for a student should have at most."""
+TELLING = ("offset", "constant-answer")
+"""Misconceptions whose detail would give a right value away."""
+
+
+def rows(bad: Array) -> int:
+    """Return at how many inputs something is so, of an array of one row for each.
+
+    >>> rows(np.array([[True, True], [False, False]]))
+    1
+    """
+    return int(np.count_nonzero(bad.reshape(len(bad), -1).any(axis=1)))
+
+
+def joined(*sentences: str) -> str:
+    """Return sentences in a row, the first one anyway and each further one while there is room for it.
+
+    >>> joined("one thing", "another.", "")
+    'One thing. Another.'
+    """
+    text = ""
+    for each in filter(None, sentences):
+        more = f"{text} {sentence(each)}".strip()
+        if not text or len(more) <= LONGEST:
+            text = more
+    return text if len(text) <= LONGEST else plain_text(text, LONGEST)
+
+
+def clause(text: str) -> str:
+    """Return what a sentence says before it explains.
+
+    >>> clause("You forgot the cosine: light spreads.")
+    'You forgot the cosine'
+    """
+    return text.split(": ")[0].split("; ")[0].rstrip(".")
+
+
+def hint_for(
+    suspicion: Any, hints: Mapping[str, Mapping[str, str]], language: str, *, shown: bool = True
+) -> str:
+    """Return what is said of a suspicion: the question's own hint before the catalogue's, and its detail.
+
+    The detail is left out where it would give a right value away that is not ``shown``.
+    """
+    hint = hints.get(suspicion.name, {}).get(language) or suspicion.message.rstrip(".")
+    detail = suspicion.detail if shown or suspicion.name not in TELLING else ""
+    return f"{hint.rstrip('.')} ({detail})" if detail else hint
+
+
+def wrong_at(
+    answer: Array, right: Array, given: Mapping[str, Array], good: Array, language: str, *, shown: bool
+) -> tuple[str, str]:
+    """Return how often an answer is wrong, with the worst input and what comes out there, and without."""
+    count = say(language, "wrong", bad=rows(~good), count=len(right))
+    full = ""
+    for most in range(len(given), 0, -1):  # fewer inputs where they would be too long
+        full = f"{count}: {_witness(answer, right, given, most, language, shown=shown)}"
+        if len(full) <= LONGEST // 2:
+            break
+    return full, count
+
+
+def _witness(
+    answer: Array, right: Array, given: Mapping[str, Array], most: int, language: str, *, shown: bool
+) -> str:
+    """Return the first of the inputs where the answer is farthest off, and what it gives there."""
+    off = np.abs(answer - right) / np.maximum(np.maximum(np.abs(right), np.abs(answer)), 1e-300)
+    row = int(np.argmax(np.round(np.nan_to_num(off.reshape(len(off), -1).max(axis=1)), 6)))
+    named = [f"{name} = {_brief(value[row] if value.ndim else value)}" for name, value in given.items()]
+    inputs = ", ".join(named[:most]) + (", …" if most < len(named) else "")
+    value, truth = _told_apart(answer[row], right[row])
+    return say(language, "witness" if shown else "witness-hidden", inputs=inputs, value=value, right=truth)
+
+
+def _told_apart(value: Any, right: Any) -> tuple[str, str]:
+    """Return two numbers with as many digits as tell them apart."""
+    for digits in (6, 9, 12, 17):
+        texts = _brief(value, digits), _brief(right, digits)
+        if texts[0] != texts[1]:
+            break
+    return texts
+
+
+def _brief(value: Any, digits: int = 6) -> str:
+    array = np.asarray(value)
+    if array.ndim == 0:
+        return f"{array.item():.{digits}g}"
+    if array.size > 3:
+        return "[…]"
+    return "(" + ", ".join(f"{each:.{max(digits - 2, 4)}g}" for each in array.ravel().tolist()) + ")"
