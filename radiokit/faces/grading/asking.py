@@ -19,26 +19,23 @@ RANGE = 1e100
 
 def asked(
     callee: Callee, given: Mapping[str, Array], right: Array, seed: int, allowed: Array
-) -> tuple[Result, Result, Mode]:
-    """Return the answer to all inputs at once, the best one, and how that was asked for.
-
-    The best is that to all at once or, where it is none or wrong, one by one.
-    """
+) -> tuple[Result, Mode]:
+    """Return the answer to all inputs at once or, where that is none or wrong, one by one; and which."""
     arrays = list(given.values())
-    batch = best = callee.call(*arrays, mode="batch", seed=seed)
+    best = callee.call(*arrays, mode="batch", seed=seed)
     mode: Mode = "batch"
     if is_right(best, right, allowed) or not any(array.ndim for array in arrays):
-        return batch, best, mode
+        return best, mode
     one_by_one: tuple[Mode, ...] = ("scalar", "single")
     for other in one_by_one:
         result = callee.call(*arrays, mode=other, seed=seed)
         if is_right(result, right, allowed):
-            return batch, result, other
+            return result, other
         if _usable(result, right) and not _usable(best, right):
             best, mode = result, other
         elif other == "scalar" and not result.ok and best.raised in ("TypeError", "ValueError"):
             best, mode = result, other  # what arrays do to code for numbers says less
-    return batch, best, mode
+    return best, mode
 
 
 def _usable(result: Result, right: Array) -> bool:
@@ -73,15 +70,17 @@ def close(answer: Array, right: Array, allowed: Array) -> Array:
     return close
 
 
-def out_of_range(answer: Array, right: Array, given: Mapping[str, Array], good: Array) -> bool:
+def out_of_range(
+    answer: Array, right: Array, given: Mapping[str, Array], good: Array, *, widest: float = RANGE
+) -> bool:
     """Return whether all that is wrong is 0, infinite or NaN, at inputs so large or small that it may be."""
     bad = ~good.reshape(len(right), -1).all(axis=1)
-    if bad.all():
+    if bad.all() or not bad.any():
         return False
     lost = good | ~np.isfinite(answer) | ((answer == 0) & (right != 0))
     extreme = np.zeros(len(right), dtype=bool)
     for value in given.values():
         size = np.abs(np.broadcast_to(value, (len(right),) if value.ndim == 0 else value.shape))
-        wide = (size > RANGE) | ((size > 0) & (size < 1 / RANGE))
+        wide = (size > widest) | ((size > 0) & (size < 1 / widest))
         extreme |= wide.reshape(len(right), -1).any(axis=1)
     return bool(lost.all() and extreme[bad].all())

@@ -14,8 +14,10 @@ __all__ = ["LONGEST", "clause", "hint_for", "joined", "rows", "wrong_at"]
 
 LONGEST = 300
 """How many characters a text for a student should have at most."""
-TELLING = ("offset", "constant-answer")
+TELLING = ("offset",)
 """Misconceptions whose detail would give a right value away."""
+PLAIN = ("horizon-not-clamped",)
+"""Misconceptions whose detail says no more than the evidence."""
 
 
 def rows(bad: Array) -> int:
@@ -53,13 +55,15 @@ def clause(text: str) -> str:
 def hint_for(
     suspicion: Any, hints: Mapping[str, Mapping[str, str]], language: str, *, shown: bool = True
 ) -> str:
-    """Return what is said of a suspicion: the question's own hint before the catalogue's, and its detail.
+    """Return what is said of a suspicion: the question's own hint, or the catalogue's with its detail.
 
     The detail is left out where it would give a right value away that is not ``shown``.
     """
-    hint = hints.get(suspicion.name, {}).get(language) or suspicion.message.rstrip(".")
-    detail = suspicion.detail if shown or suspicion.name not in TELLING else ""
-    return f"{hint.rstrip('.')} ({detail})" if detail else hint
+    if suspicion.name in hints:
+        return hints[suspicion.name][language]
+    detail = "" if suspicion.name in (PLAIN if shown else PLAIN + TELLING) else suspicion.detail
+    hint: str = suspicion.message.rstrip(".")
+    return f"{hint} ({detail})" if detail else hint
 
 
 def wrong_at(
@@ -67,24 +71,34 @@ def wrong_at(
 ) -> tuple[str, str]:
     """Return how often an answer is wrong, with the worst input and what comes out there, and without."""
     count = say(language, "wrong", bad=rows(~good), count=len(right))
-    full = ""
-    for most in range(len(given), 0, -1):  # fewer inputs where they would be too long
-        full = f"{count}: {_witness(answer, right, given, most, language, shown=shown)}"
+    row = _worst(answer, right)
+    named = [f"{name} = {_brief(_at(value, row))}" for name, value in given.items() if _is_short(value)]
+    value, truth = _told_apart(answer[row], right[row])
+    full = count
+    for most in range(len(named), -1, -1):  # fewer inputs where they would be too long
+        inputs = ", ".join(named[:most]) + (", …" if most < len(given) else "")
+        if not most:
+            inputs = say(language, "number", row=row + 1)
+        key = "witness" if shown else "witness-hidden"
+        full = f"{count}: {say(language, key, inputs=inputs, value=value, right=truth)}"
         if len(full) <= LONGEST // 2:
             break
     return full, count
 
 
-def _witness(
-    answer: Array, right: Array, given: Mapping[str, Array], most: int, language: str, *, shown: bool
-) -> str:
-    """Return the first of the inputs where the answer is farthest off, and what it gives there."""
+def _worst(answer: Array, right: Array) -> int:
+    """Return the first of the inputs where the answer is farthest off."""
     off = np.abs(answer - right) / np.maximum(np.maximum(np.abs(right), np.abs(answer)), 1e-300)
-    row = int(np.argmax(np.round(np.nan_to_num(off.reshape(len(off), -1).max(axis=1)), 6)))
-    named = [f"{name} = {_brief(value[row] if value.ndim else value)}" for name, value in given.items()]
-    inputs = ", ".join(named[:most]) + (", …" if most < len(named) else "")
-    value, truth = _told_apart(answer[row], right[row])
-    return say(language, "witness" if shown else "witness-hidden", inputs=inputs, value=value, right=truth)
+    return int(np.argmax(np.round(np.nan_to_num(off.reshape(len(off), -1).max(axis=1)), 6)))
+
+
+def _at(value: Array, row: int) -> Any:
+    return value[row] if value.ndim else value
+
+
+def _is_short(value: Array) -> bool:
+    """Return whether an input is a number or a vector."""
+    return value.ndim < 2 or value[0].size <= 3
 
 
 def _told_apart(value: Any, right: Any) -> tuple[str, str]:

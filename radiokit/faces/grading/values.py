@@ -28,6 +28,8 @@ SURE = 0.5
 """From which confidence on a misconception is named alone."""
 SLACK = 64
 """How many roundings of its terms a careless formula may be off."""
+SINGLE, DOUBLE = 2e-5, 1e-6
+"""The relative deviation of a right formula with its digits lost, of numbers in float32 and others."""
 FEWEST = 5
 """How many answers a diagnosis of some of them takes."""
 
@@ -117,7 +119,7 @@ class Values:
         right = np.atleast_1d(np.asarray(self.reference(**given), dtype=float))
         seed = int(rng.integers(1 << 32))
         allowed = self._allowed(right, self.rtol)
-        batch, first, mode = asked(callee, given, right, seed, allowed)
+        first, mode = asked(callee, given, right, seed, allowed)
         if not first.ok:
             return Finding(share=0.0, text=say(language, "call", function=callee.name, error=first.error))
         answer, problem = fitted(first, right, language)
@@ -134,9 +136,7 @@ class Values:
             return Finding(share=0.0, text=say(language, "not-repeatable"), diagnosis="not-repeatable")
         if mode == "batch":
             return Finding(share=1.0, text=say(language, "full"))
-        key = "array-wrong" if batch.ok else "array-error"
-        error = say(language, key, error=batch.error)
-        return Finding(share=1.0, text=say(language, "full-one-by-one", error=error))
+        return Finding(share=1.0, text=say(language, "full-one-by-one"))
 
     def _allowed(self, right: Array, rtol: float) -> Array:
         size = np.abs(right)
@@ -161,7 +161,7 @@ class Values:
         )
         key, values = self._known(answer, right, given, good)
         if key:
-            name = "single-precision" if key == "float32" else "imprecise" if key == "imprecise" else key
+            name = "single-precision" if key.startswith("float32") else key
             text = joined(say(language, key, **values), hints.get(name, {}).get(language, ""))
             return Finding(share=share, text=text, diagnosis=name, confidence=1.0)
         full, count = wrong_at(answer, right, given, good, language, shown=shown)
@@ -191,9 +191,13 @@ class Values:
         self, answer: Array, right: Array, given: Mapping[str, Array], good: Array
     ) -> tuple[str, dict[str, Any]]:
         """Return what is wrong where it is no misconception: digits, or the range of numbers."""
-        finite = np.isfinite(answer)
+        finite, size = np.isfinite(answer), np.abs(right)
         if out_of_range(answer, right, given, good):
             return "out-of-range", {"bad": rows(~good), "count": len(right)}
+        if answer.dtype == np.float32:
+            near = close(answer, right, SINGLE * size)
+            if out_of_range(answer, right, given, near, widest=1e15):
+                return "float32-range", {"bad": rows(~near), "count": len(right)}
         if not finite.all():
             worst = answer[~finite].flat[0]
             value = "NaN" if math.isnan(worst) else "inf" if worst > 0 else "-inf"
@@ -204,11 +208,11 @@ class Values:
         single = answer.dtype == np.float32 or bool(np.all(numbers == numbers.astype(np.float32)))
         eps = float(np.finfo(np.float32 if single else np.float64).eps)
         terms = 0.0 if self.terms is None else np.abs(self.terms(**given))
-        near = np.maximum((2e-5 if single else 1e-6) * np.abs(right), SLACK * eps * terms)
+        near = np.maximum((SINGLE if single else DOUBLE) * size, SLACK * eps * terms)
         if not np.all(np.abs(numbers - right) <= near):
             return "", {}
-        error = np.max(np.abs(numbers - right)[right != 0] / np.abs(right[right != 0]), initial=0.0)
-        return "float32" if single else "imprecise", {"error": f"{error:.0e}", "rtol": self.rtol}
+        error = np.max((np.abs(numbers - right) / size)[size > 0], initial=0.0)
+        return "float32" if single else "imprecise", {"error": f"{error:.1g}", "rtol": self.rtol}
 
     def _diagnosed(
         self, answer: Array, right: Array, given: Mapping[str, Array], language: str

@@ -16,26 +16,30 @@ Words = Mapping[str, str]
 SENTENCES: Mapping[str, Words] = {
     "full": {"en": "right", "ru": "верно"},
     "full-one-by-one": {
-        "en": "right, but only called with one input at a time: on arrays it {error}",
-        "ru": "верно, но лишь при вызове для каждого набора данных отдельно: для массивов {error}",
+        "en": "right, called with one input at a time",
+        "ru": "верно при вызове для каждого набора данных отдельно",
     },
-    "array-error": {"en": "fails ({error})", "ru": "возникает ошибка ({error})"},
-    "array-wrong": {"en": "gives other numbers", "ru": "получаются другие числа"},
     "wrong": {
         "en": "wrong at {bad} of {count} {noun}",
         "ru": "неверно для {bad} из {count} {noun}",
     },
     "imprecise": {
-        "en": "the formula is right, but digits are lost: the relative error is up to {error}, "
-        "and {rtol:g} is asked for",
-        "ru": "формула верна, но теряются значащие цифры: относительная ошибка до {error}, "
-        "а требуется {rtol:g}",
+        "en": "the formula is right, but digits are lost: the relative error reaches {error}, "
+        "and {rtol:g} is allowed",
+        "ru": "формула верна, но теряются значащие цифры: относительная ошибка достигает {error}, "
+        "а допускается {rtol:g}",
     },
     "float32": {
-        "en": "the formula is right, but it is computed in float32, with a relative error up to {error}, "
-        "and {rtol:g} is asked for: use float64",
-        "ru": "формула верна, но вычислена в float32, с относительной ошибкой до {error}, "
-        "а требуется {rtol:g}: используйте float64",
+        "en": "the formula is right, but it is computed in float32: the relative error reaches {error}, "
+        "and {rtol:g} is allowed; use float64",
+        "ru": "формула верна, но вычислена в float32: относительная ошибка достигает {error}, "
+        "а допускается {rtol:g}; используйте float64",
+    },
+    "float32-range": {
+        "en": "the formula is right, but numbers leave the range of float32 at {bad} of {count} {noun}: "
+        "use float64",
+        "ru": "формула верна, но числа выходят за пределы float32 ({bad} из {count} {noun}): "
+        "используйте float64",
     },
     "out-of-range": {
         "en": "the formula is right, but an intermediate number overflows or underflows at {bad} of {count} "
@@ -72,6 +76,7 @@ SENTENCES: Mapping[str, Words] = {
         "en": "at {inputs} it gives {value}",
         "ru": "при {inputs} получено {value}",
     },
+    "number": {"en": "input no. {row}", "ru": "наборе данных № {row}"},
     "both": {"en": "two mistakes at once: {names}", "ru": "две ошибки сразу: {names}"},
     "one-of": {"en": "one of these: {names}", "ru": "одно из: {names}"},
     "not-loaded": {"en": "the submission {error}", "ru": "работа не загрузилась: {error}"},

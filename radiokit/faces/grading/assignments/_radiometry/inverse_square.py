@@ -78,7 +78,7 @@ too.
             "ru": "πd² — площадь круга: поток распределён по сфере, 4πd²",
         },
         "square-centimetres": {
-            "en": "Your answer is 10⁴ times too large: the distance is in metres, and so is the answer, in W/m²",
+            "en": "Your answer is 10⁴ times too large: the distance is in metres, and W/m² are asked for",
             "ru": "Ответ в 10⁴ раз больше: расстояние дано в метрах, и ответ нужен в Вт/м²",
         },
         "out-of-range": {

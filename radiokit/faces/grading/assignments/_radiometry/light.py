@@ -50,7 +50,9 @@ def _lights(rng: np.random.Generator) -> dict[str, Any]:
 
 def _far_and_near_lights(rng: np.random.Generator) -> dict[str, Any]:
     drawn = far_and_near(rng)
-    given = _placed(rng, drawn["distance"], drawn["distance"], powers(rng, -200, 200, COUNT))
+    usual = np.abs(np.log10(drawn["distance"])) < 100
+    length = np.where(usual, powers(rng, -1, 1, COUNT), powers(rng, -200, 200, COUNT))
+    given = _placed(rng, drawn["distance"], drawn["distance"], length)
     return {**given, "intensity": drawn["flux"]}
 
 
@@ -130,8 +132,8 @@ $10^{-200}$ до $10^{200}$: их квадраты не умещаются во 
             "ru": "Не хватает степени расстояния: разделён ли вектор на источник на свою длину?",
         },
         "out-of-range": {
-            "en": "divide a vector by its largest component before you take its length, and divide by d twice",
-            "ru": "разделите вектор на наибольшую компоненту, прежде чем искать длину, и делите на d дважды",
+            "en": "divide a vector by its largest component before you take its length; divide by d twice",
+            "ru": "разделите вектор на наибольшую компоненту, прежде чем искать длину; делите на d дважды",
         },
     },
 )

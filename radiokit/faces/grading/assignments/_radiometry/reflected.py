@@ -127,8 +127,8 @@ $10^{-14}$.
             "ru": "Источники под горизонтом вычитаются: отбросьте слагаемые с отрицательным косинусом",
         },
         "absolute-value": {
-            "en": "You took |cos θ|, and lights below the horizon shine through the surface: take max(0, cos θ)",
-            "ru": "Вы взяли |cos θ|, и источники под горизонтом светят сквозь поверхность: нужен max(0, cos θ)",
+            "en": "You took |cos θ|: lights below the horizon give nothing, take max(0, cos θ)",
+            "ru": "Вы взяли |cos θ|: источники под горизонтом вклада не дают, нужен max(0, cos θ)",
         },
         "mean-for-sum": {
             "en": "You took the mean over the lights: their light adds up",

@@ -115,8 +115,8 @@ $1 - \cos^2\alpha$ теряет цифры; относительная ошиб�
             "ru": "Первообразная cos θ sin θ равна sin²θ/2: двойка сокращается с той, что в 2π",
         },
         "imprecise": {
-            "en": "1 − cos²α and 1 − cos 2α subtract nearly equal numbers: sin²α is exact",
-            "ru": "в 1 − cos²α и 1 − cos 2α вычитаются почти равные числа: sin²α точен",
+            "en": "1 − cos²α and 1 − cos 2α subtract nearly equal numbers: sin²α loses none",
+            "ru": "в 1 − cos²α и 1 − cos 2α вычитаются почти равные числа: sin²α цифр не теряет",
         },
     },
 )
