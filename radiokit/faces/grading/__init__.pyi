@@ -1,4 +1,5 @@
 from .assignment import Assignment as Assignment
+from .assignment import assignment_from_source as assignment_from_source
 from .assignment import list_assignments as list_assignments
 from .assignment import load_assignment as load_assignment
 from .assignment import student_rng as student_rng
