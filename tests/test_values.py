@@ -467,7 +467,7 @@ def test_each_sentence_is_in_both_languages_with_the_same_fields() -> None:
     for key, words in SENTENCES.items():
         fields = [sorted(re.findall(r"{(\w+)", words[language])) for language in LANGUAGES]
         assert fields[0] == fields[1], key
-        if key != "call":  # which is all fields
+        if re.search("[a-z]", re.sub("{.*?}", "", words["en"])):  # it is not all fields
             assert re.search("[а-я]", words["ru"]), key
 
 

@@ -143,7 +143,7 @@ def sentence(text: str) -> str:
     """
     text = text.strip().rstrip(".;")
     first = text[:1] if "Α" <= text[:1] <= "ω" else text[:1].upper()
-    return f"{first}{text[1:]}{'' if text.endswith('?') else '.'}" if text else ""
+    return f"{first}{text[1:]}{'' if text.endswith(('?', '!')) else '.'}" if text else ""
 
 
 def _noun(language: str, count: int) -> str:
