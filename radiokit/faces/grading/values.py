@@ -33,7 +33,7 @@ SINGLE, DOUBLE = 2e-5, 1e-6
 NAMES = {"float32": "single-precision", "float32-range": "single-precision", "constant": "constant-answer"}
 """Diagnoses by sentences, where they differ."""
 FEWEST = 5
-"""How many answers a diagnosis of some of them takes."""
+"""How many answers it takes to tell something of them all."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -126,7 +126,7 @@ class Values:
             return Finding(share=0.0, text=say(language, "call", function=callee.name, error=first.error))
         answer, problem = fitted(first, right, language)
         if problem:
-            return Finding(share=0.0, text=problem)
+            return Finding(share=0.0, text=joined(problem))
         good = close(answer, right, allowed)
         if not good.all():
             return self._wrong(answer, right, given, good, language=language, hints=hints, shown=shown)
@@ -135,7 +135,8 @@ class Values:
             right = right[::-1]
         second = callee.call(*turned, mode=mode, seed=seed)
         if not is_right(second, right, self._allowed(right, self.rtol)):
-            return Finding(share=0.0, text=say(language, "not-repeatable"), diagnosis="not-repeatable")
+            text = joined(say(language, "not-repeatable"))
+            return Finding(share=0.0, text=text, diagnosis="not-repeatable")
         if mode == "batch":
             return Finding(share=1.0, text=say(language, "full"))
         return Finding(share=1.0, text=say(language, "full-one-by-one"))
@@ -169,7 +170,7 @@ class Values:
         full, count = wrong_at(answer, right, given, good, language, shown=shown)
         found = self._diagnosed(answer.astype(float), right, given, language) if right.ndim == 1 else None
         if found is None or found.first is None:
-            notes = "; ".join(found.notes) if found is not None and shown else ""
+            notes = "; ".join(found.notes) if found is not None and shown and not found.right else ""
             return Finding(share=share, text=joined(full, notes))
         first = found.first
         if first.name == "wrong-at-few":  # the evidence says more
@@ -209,7 +210,8 @@ class Values:
         numbers = answer.astype(float)
         if len(right) > 1 and not np.ptp(numbers):
             return ("constant", {"value": f"{numbers.flat[0]:.6g}"}) if np.ptp(right) else ("", {})
-        single = answer.dtype == np.float32 or bool(np.all(numbers == numbers.astype(np.float32)))
+        short = len(right) >= FEWEST and bool(np.all(numbers == numbers.astype(np.float32)))
+        single = short or answer.dtype == np.float32
         eps = float(np.finfo(np.float32 if single else np.float64).eps)
         terms = 0.0 if self.terms is None else np.abs(self.terms(**given))
         near = np.maximum((SINGLE if single else DOUBLE) * size, SLACK * eps * terms)
@@ -224,9 +226,8 @@ class Values:
         """Return what explains the answers or, if nothing does, those where the right one is not 0."""
         size = len(right)
         context = dict(self.context(**given)) if self.context is not None else {}
-        columns = {
-            name: value for name, value in {**given, **context}.items() if _is_column(name, value, size)
-        }
+        every = {**given, **context}
+        columns = {name: value for name, value in every.items() if _is_column(name, value, size)}
         others = {name: np.asarray(variant(**given), dtype=float) for name, variant in self.variants.items()}
         usual = (*CATALOGUE, *_arguments(self.reference, given, right))
 
