@@ -24,8 +24,6 @@ __all__ = ["Submission", "cells", "prepare", "starts", "told", "without_magics"]
 
 PROBLEMS = 20
 NAMES = 60
-HIDDEN = "radiokit"
-"""A submission stands alone: the package that judges it is not there for it."""
 
 _LINE_MAGIC = re.compile(r"\s*([%!?]|\?{0,2}[\w.]+\?{1,2}\s*$)")
 _ASSIGNED_MAGIC = re.compile(r"\s*[\w, ]+=\s*[%!]\s*[\w./]")
@@ -49,14 +47,6 @@ class _Silent:
 
     def __call__(self, *arguments: Any, **keywords: Any) -> None:
         return None
-
-
-class _Hider:
-    """Finds no module, and says of one that it is not there."""
-
-    def find_spec(self, name: str, path: Any = None, target: Any = None) -> None:
-        if name.split(".")[0] == HIDDEN:
-            raise ModuleNotFoundError(f"{HIDDEN} is not there for a submission, which must stand alone")
 
 
 def cells(text: str) -> list[str]:
@@ -303,7 +293,6 @@ def _parsed(lines: list[str], begin: int, end: int, name: str) -> list[ast.stmt]
 
 def prepare() -> None:
     """Make this process one in which submissions are run."""
-    sys.meta_path.insert(0, _Hider())
     vars(builtins).update(exit=sys.exit, quit=sys.exit)
     signal.signal(signal.SIGALRM, _late)
 

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import functools
+import importlib.util
 import json
+import marshal
 import os
 import selectors
 import shutil
@@ -26,11 +29,13 @@ from radiokit.faces.grading.result import steady
 __all__ = ["ChildProcess", "StoppedError"]
 
 HERE = Path(__file__).resolve().parent
-PROGRAMS = ("child", "protocol", "loading", "answers")
+PROGRAMS = ("child", "protocol", "imports", "loading", "answers")
+LAUNCHING = ("launcher", "descendants", "namespaces", "seccomp")
 KEPT = 2000
 """How many characters of what is printed are kept."""
 SYSTEM = (
     *("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/nix/store", "/gnu/store", "/etc/ld.so.cache"),
+    "/etc/fonts",
     *("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom"),
 )
 
@@ -61,6 +66,8 @@ class ChildProcess:
         self._printed = 0
         self.folder = os.path.realpath(tempfile.mkdtemp(prefix="radiokit-"))
         Path(self.folder).chmod(0o755)
+        for name in (*PROGRAMS, *LAUNCHING):  # compiled once, as a class has many submissions
+            Path(self.folder, f"{name}.pyc").write_bytes(_compiled(name))
         self._results, results = os.pipe()
         try:
             self._process = process = subprocess.Popen(
@@ -176,10 +183,19 @@ class ChildProcess:
         except subprocess.TimeoutExpired:
             return "closed its channel of answers"
         self._drain()
+        if code == -signal.SIGUSR1:
+            return f"used more than {self._limits.memory_bytes / 2**30:.3g} GiB of memory"
         number = -code if code < 0 else code - 128
         if number in set(signal.Signals):
             return f"was ended by {signal.Signals(number).name}"
         return f"ended its process with exit code {code}"
+
+
+@functools.cache
+def _compiled(name: str) -> bytes:
+    """Return one of the programs, as Python would keep it in a cache of its own."""
+    code = compile((HERE / f"{name}.py").read_bytes(), f"{name}.py", "exec", dont_inherit=True)
+    return importlib.util.MAGIC_NUMBER + bytes(12) + marshal.dumps(code)
 
 
 def _command(folder: str, limits: Limits, files: dict[str, str], results: int, namespaces: bool) -> list[str]:
@@ -196,12 +212,12 @@ def _command(folder: str, limits: Limits, files: dict[str, str], results: int, n
         "results": results,
         "uid": 61184 + os.getpid() % 4000,
         "needs": [python, np.__file__, os.__file__],
-        "programs": {f"{name}.py": str(HERE / f"{name}.py") for name in PROGRAMS},
+        "programs": {f"{name}.pyc": f"{folder}/{name}.pyc" for name in PROGRAMS},
         "files": files,
         "visible": visible,
         "hidden": [str(Path(folder).resolve()) for folder in radiokit.__path__],
     }
-    return [python, "-I", "-B", "-S", str(HERE / "launcher.py"), json.dumps(spec)]
+    return [python, "-I", "-B", "-S", f"{folder}/launcher.pyc", json.dumps(spec)]
 
 
 def _packages(site: str, visible: Sequence[str]) -> list[str]:
