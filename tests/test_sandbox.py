@@ -437,3 +437,27 @@ def test_only_files_are_isolated(capsys):
     with pytest.raises(SystemExit):
         main(["check", "ggx", "--isolated"])
     assert "only file.py:function is run in a sandbox" in capsys.readouterr().err
+
+
+def test_what_is_done_apart_is_forgotten(tmp_path):
+    code = "seen = []\ndef count(x): seen.append(x); return len(seen)\ndef end(x): import os; os._exit(90)"
+    (tmp_path / "counting.py").write_text(code, encoding="utf-8")
+    with Sandbox(tmp_path / "counting.py") as sandbox:
+        found = [sandbox.call("count", X).values[0] for _ in range(2)]
+        for _ in range(2):
+            with sandbox.apart():
+                found += [sandbox.call("count", X).values[0] for _ in range(2)]
+        with sandbox.apart():
+            assert sandbox.call("end", X, timeout=0.3).error
+        with sandbox.apart():
+            found.append(sandbox.call("count", X).values[0])
+        assert found == [1, 2, 3, 4, 3, 4, 1]
+
+
+@pytest.mark.parametrize("function", ["exits", "kills_itself"])
+def test_a_copy_ends_as_the_process_itself_would(hostile, function):
+    alone = hostile.call(function, X).error
+    with hostile.apart():
+        assert hostile.call(function, X).error == alone
+        assert hostile.call("double", X).ok
+    assert hostile.call("double", X).ok

@@ -12,6 +12,7 @@ import fcntl
 import json
 import marshal
 import os
+import signal
 import sys
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,8 @@ __all__: list[str] = []
 
 HIGH = 40
 """The first file descriptor tried for the private pipes."""
+BRANCH_ENDED = 90
+"""Exit code of a branch that was told to end."""
 
 
 def _beside(name: str) -> Any:
@@ -53,6 +56,7 @@ class _Child:
         self._requests, self._results = requests, results
         self._pack, self._text = self._protocol.pack, self._protocol.plain_text
         self._read, self._write = os.read, os.write
+        self._fork, self._wait, self._exit = os.fork, os.waitpid, os._exit
         self._submission: Any = None
 
     def send(self, header: dict[str, Any], arrays: Any = ()) -> None:
@@ -69,6 +73,9 @@ class _Child:
                     return
                 whole.feed(data)
             request, arrays = whole.message()
+            if "branch" in request:
+                self._branch(request)
+                continue
             values: Any = ()
             try:
                 header, values = self._answer(request, arrays)
@@ -80,6 +87,27 @@ class _Child:
                 header = self._raised(error)
             self._flush()
             self.send({"id": request["id"], **header}, values)
+
+    def _branch(self, request: dict[str, Any]) -> None:
+        """Go on in a copy of this process, or end the copy: then all goes on from here, as it was before.
+
+        A copy that ends by itself ends this process in the same way.
+        """
+        self._flush()
+        if not request["branch"]:
+            self.send({"id": request["id"], "facts": {}})
+            self._exit(BRANCH_ENDED)
+        branch = self._fork()
+        if branch == 0:
+            self.send({"id": request["id"], "facts": {}})
+            return
+        code = os.waitstatus_to_exitcode(self._wait(branch, 0)[1])
+        if code < 0:
+            if -code != signal.SIGKILL:
+                signal.signal(-code, signal.SIG_DFL)
+            os.kill(os.getpid(), -code)
+        elif code != BRANCH_ENDED:
+            self._exit(code)
 
     def _flush(self) -> None:
         with contextlib.suppress(BaseException):
