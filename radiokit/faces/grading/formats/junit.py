@@ -39,28 +39,28 @@ def to_junit(grade: Grade, *, reveal: bool = False) -> str:
                 classname=_clean(f"{grade.assignment}.{question.name}"),
                 name=_clean(line.title),
             )
-            properties = {
+            values: dict[str, str | float] = {
                 "score": part.score,
                 "points": part.points,
                 "visibility": part.visibility,
                 "diagnosis": line.diagnosis,
             }
-            _properties(case, properties)
+            _properties(case, values)
             counts["tests"] += 1
             if line.standing == "pending":
                 counts["skipped"] += 1
                 ElementTree.SubElement(case, "skipped", message=_clean(line.text))
             elif line.standing != "full":
-                kind, count = ("error", "errors") if question.review else ("failure", "failures")
-                counts[count] += 1
+                kind = "error" if question.review else "failure"
+                counts[f"{kind}s"] += 1
                 message = _clean(f"{line.score} / {line.points}: {line.text}")
                 element = ElementTree.SubElement(case, kind, message=message, type=line.diagnosis or "points")
                 element.text = _clean("\n".join([line.text, *notes_of(grade, question)]))
-        for name, count in counts.items():
-            suite.set(name, str(count))
-            totals[name] += count
-    for name, count in totals.items():
-        root.set(name, str(count))
+        for name, cases in counts.items():
+            suite.set(name, str(cases))
+            totals[name] += cases
+    for name, cases in totals.items():
+        root.set(name, str(cases))
     ElementTree.indent(root)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"
 

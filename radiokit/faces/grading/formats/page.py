@@ -29,6 +29,7 @@ code { font-family: ui-monospace, "DejaVu Sans Mono", monospace; font-size: .92e
 table { width: 100%; border-collapse: collapse; }
 th, td { padding: .4rem .5rem; border-bottom: 1px solid #c4c4c4; text-align: left; vertical-align: top; }
 thead th { font-size: .85rem; color: #444; }
+thead th:nth-child(2) { text-align: right; }
 tbody th { width: 27%; font-weight: 400; }
 td { overflow-wrap: anywhere; }
 td.points { width: 5.5rem; white-space: nowrap; text-align: right; font-variant-numeric: tabular-nums; }

@@ -1,4 +1,4 @@
-"""Writing: the formats by their names, which one a file's name means, and files that are never half written."""
+"""Writing: the formats by name, which one a file's name means, and files that are never half written."""
 
 from __future__ import annotations
 
