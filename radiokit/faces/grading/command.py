@@ -55,6 +55,8 @@ def grade(
 
     files = [output(target) for target in out or ()]
     checked_language(language)
+    if not student.isprintable():
+        raise ParameterError("student", student, "of printable letters")
     source, name = assignment_source(assignment)
     work = assignment_from_source(source, name)
     if submission.suffix not in (".py", ".ipynb"):

@@ -12,7 +12,7 @@ import re
 from typing import Any
 
 import radiokit
-from radiokit.faces.grading.formats.shown import line_of
+from radiokit.faces.grading.formats.shown import line_of, plain
 from radiokit.faces.grading.grades import Grade
 from radiokit.faces.grading.words import checked_language
 from radiokit.facts.errors import ParameterError
@@ -74,6 +74,7 @@ def to_github(grade: Grade, *, reveal: bool = False) -> dict[str, Any]:
     reveal : bool
         Whether what was found about hidden parts is told.
     """
+    grade = plain(grade)
     tests = []
     for question in grade.questions:
         for part in question.parts:

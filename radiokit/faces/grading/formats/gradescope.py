@@ -9,7 +9,7 @@ from typing import Any
 
 import radiokit
 from radiokit.faces.grading.formats.phrases import phrase
-from radiokit.faces.grading.formats.shown import notes_of
+from radiokit.faces.grading.formats.shown import notes_of, plain
 from radiokit.faces.grading.grades import Grade, PartGrade, QuestionGrade
 
 __all__ = ["to_gradescope"]
@@ -39,6 +39,7 @@ def to_gradescope(grade: Grade) -> dict[str, Any]:
     >>> test["name"], test["score"], test["max_score"], test["visibility"], test["status"]
     ('f: ordinary inputs', 1.0, 2.0, 'hidden', 'failed')
     """
+    grade = plain(grade)
     result: dict[str, Any] = {
         "visibility": "visible",
         "stdout_visibility": "hidden",
