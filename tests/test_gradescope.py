@@ -273,6 +273,7 @@ def test_without_namespaces_the_secret_is_closed_too(base, hand_in, monkeypatch)
     [
         (METADATA, "a@x,b@x"),
         ({"users": [{"id": 7, "email": ""}]}, "7"),
+        ({"users": [{"email": "a\x1b\n\ud800@x "}]}, "a? ?@x"),
         ({"users": []}, ""),
         ({}, ""),
         (None, ""),

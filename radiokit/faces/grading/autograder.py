@@ -20,6 +20,7 @@ from radiokit.faces.grading.classroom.discovery import Entry
 from radiokit.faces.grading.classroom.reasons import NoSubmissionError
 from radiokit.faces.grading.formats.gradescope import to_gradescope
 from radiokit.faces.grading.formats.writing import json_text, write_file
+from radiokit.faces.grading.protocol import plain_text
 from radiokit.faces.grading.unfinished import no_submission
 
 __all__ = ["main", "student_of"]
@@ -35,7 +36,7 @@ def student_of(metadata: Any) -> str:
     """
     users = metadata.get("users") if isinstance(metadata, dict) else None
     names = [
-        str(user.get("email") or user.get("id") or "").strip()
+        plain_text(user.get("email") or user.get("id") or "")
         for user in (users if isinstance(users, list) else [])
         if isinstance(user, dict)
     ]

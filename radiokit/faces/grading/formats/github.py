@@ -43,7 +43,7 @@ jobs:
         with:
           python-version: "{python}"
       - name: Install radiokit
-        run: python -m pip install {install}
+        run: python -m pip install "{install}"
       - name: Grade
         id: radiokit
         env:

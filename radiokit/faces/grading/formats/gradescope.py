@@ -18,9 +18,10 @@ __all__ = ["to_gradescope"]
 def to_gradescope(grade: Grade) -> dict[str, Any]:
     """Return a grade as the content of Gradescope's ``results.json``.
 
-    Each part of a question is a test with its own visibility, which Gradescope enforces. All is plain text,
-    that Gradescope escapes. What the autograder prints is shown to instructors alone. The time is left out,
-    so that the same submission gives the same file.
+    Each part of a question is a test with its own visibility, which Gradescope enforces: it shows students
+    no total while some parts are still to be shown. All is plain text, that Gradescope escapes. What the
+    autograder prints is shown to instructors alone. The time is left out, so that the same submission gives
+    the same file.
 
     Parameters
     ----------

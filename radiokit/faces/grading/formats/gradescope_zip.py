@@ -37,7 +37,8 @@ uv=$base/uv/bin/uv
 rm -rf "$base/uv" "$base/cache"
 chmod -R a+rX "$base/venv"
 if [ -d "$base/python" ]; then chmod -R a+rX "$base/python"; fi
-PYTHONPATH=$here/package "$base/venv/bin/python" -B -m radiokit.faces.cli grade --help >/dev/null
+"$base/venv/bin/python" -m compileall -q "$here/package"
+PYTHONPATH=$here/package "$base/venv/bin/python" -m radiokit.faces.cli grade --help >/dev/null
 """
 
 _RUN = """\
