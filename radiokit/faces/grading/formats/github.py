@@ -1,7 +1,8 @@
 """GitHub Classroom: a grade as its autograding reporter reads it, and the workflow that makes one.
 
 The format is that of the runners whose results https://github.com/classroom-resources/autograding-grading-reporter
-adds up: JSON in base64, in the environment variable ``RUNNER_RESULTS``.
+adds up: JSON in base64, in the environment variable ``RUNNER_RESULTS``. GitHub has ended Classroom itself; the
+reporter is an action that runs in any repository.
 """
 
 from __future__ import annotations
