@@ -11,6 +11,7 @@ import sys
 import tempfile
 import time
 import zipfile
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -18,7 +19,7 @@ import jsonschema
 import pytest
 
 import radiokit as rk
-from radiokit.faces.grading import grader
+from radiokit.faces.grading import autograder, grader
 from radiokit.faces.grading.autograder import main, student_of
 from radiokit.faces.grading.formats.gradescope_zip import pinned_requirements
 from radiokit.faces.grading.sandbox import Sandbox
@@ -266,6 +267,16 @@ def test_without_namespaces_the_secret_is_closed_too(base, hand_in, monkeypatch)
     assert [test["score"] for test in results["tests"]] == [0, 0]
     if "user" in results["extra_data"]["protections"]:  # root can become another, if others can read Python
         assert results["tests"][0]["output"].count("PermissionError") == 7
+
+
+def test_an_image_that_would_show_the_secret_is_not_built(monkeypatch, capsys):
+    class Open(Sandbox):
+        def load(self, timeout=None):
+            return replace(super().load(timeout), protections=("limits", "privileges"))
+
+    monkeypatch.setattr(autograder, "Sandbox", Open)
+    assert main(["--check"]) == 1
+    assert "could read the secret" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,7 @@
 """Autograder: what ``run_autograder`` starts on Gradescope: finds the work and whose it is, and grades it.
 
 It is started as ``python -m radiokit.faces.grading.autograder BASE LANGUAGE``; BASE is ``/autograder``
-there. It prints no names.
+there. It prints no names. With ``--check`` alone it says whether submissions could read the secret.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from radiokit.faces.console import fail
 from radiokit.faces.grading.assignment import load_assignment
 from radiokit.faces.grading.classroom.contents import read_submission
 from radiokit.faces.grading.classroom.discovery import Entry
@@ -21,6 +22,7 @@ from radiokit.faces.grading.classroom.reasons import NoSubmissionError
 from radiokit.faces.grading.formats.gradescope import to_gradescope
 from radiokit.faces.grading.formats.writing import json_text, write_file
 from radiokit.faces.grading.protocol import plain_text
+from radiokit.faces.grading.sandbox import Sandbox
 from radiokit.faces.grading.unfinished import no_submission
 
 __all__ = ["main", "student_of"]
@@ -45,7 +47,10 @@ def student_of(metadata: Any) -> str:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Grade what was handed in, and write ``results/results.json``; return 0 when it is there."""
-    base, language = sys.argv[1:] if arguments is None else arguments
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    if words == ["--check"]:
+        return _check()
+    base, language = words
     place = Path(base)
     source, results = place / "source", place / "results" / "results.json"
     try:
@@ -75,6 +80,19 @@ def _grade(file: Path, source: Path, results: Path, student: str, language: str)
     words += [f"--secret-file={source / 'secret.txt'}", f"--language={language}"]
     with contextlib.suppress(SystemExit):  # what it means is in the file
         radiokit([*words, f"--out=gradescope={results}"])
+
+
+def _check() -> int:
+    """Return 0 if a submission is kept from the files of others, by a root or a user of its own."""
+    with TemporaryDirectory(prefix="radiokit-") as folder:
+        file = Path(folder, "empty.py")
+        file.write_text("", encoding="utf-8")
+        with Sandbox(file) as sandbox:
+            protections = sandbox.load().protections
+    if {"root", "user"} & set(protections):
+        return 0
+    fail("submissions could read the secret here: build the image as root, with a Python that all can read")
+    return 1
 
 
 if __name__ == "__main__":

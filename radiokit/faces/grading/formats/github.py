@@ -1,8 +1,8 @@
 """GitHub Classroom: a grade as its autograding reporter reads it, and the workflow that makes one.
 
-The format is that of the runners whose results https://github.com/classroom-resources/autograding-grading-reporter
-adds up: JSON in base64, in the environment variable ``RUNNER_RESULTS``. GitHub has ended Classroom itself; the
-reporter is an action that runs in any repository.
+The format is that of the runners whose results the reporter adds up: JSON in base64, in the environment
+variable ``RUNNER_RESULTS``, see https://github.com/classroom-resources/autograding-grading-reporter.
+GitHub has ended Classroom itself; the reporter is an action for any repository.
 """
 
 from __future__ import annotations

@@ -38,7 +38,7 @@ rm -rf "$base/uv" "$base/cache"
 chmod -R a+rX "$base/venv"
 if [ -d "$base/python" ]; then chmod -R a+rX "$base/python"; fi
 "$base/venv/bin/python" -m compileall -q "$here/package"
-PYTHONPATH=$here/package "$base/venv/bin/python" -m radiokit.faces.cli grade --help >/dev/null
+PYTHONPATH=$here/package "$base/venv/bin/python" -m radiokit.faces.grading.autograder --check
 """
 
 _RUN = """\
