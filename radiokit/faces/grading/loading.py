@@ -66,7 +66,8 @@ class Submission:
         self._path = path
         self._prefixes: dict[str, str] = {}
         self._flags = 0
-        if path.suffix != ".ipynb":
+        self._is_script = path.suffix.lower() != ".ipynb"
+        if self._is_script:
             self.module.__file__ = str(path)
         self.module.__dict__.update(get_ipython=_Silent, display=_Silent())
 
@@ -103,7 +104,7 @@ class Submission:
     def _parts(self) -> Iterator[tuple[str, str, str]]:
         """Yield for each part the beginning of its places, its file name and its source."""
         data = self._path.read_bytes()
-        if self._path.suffix != ".ipynb":
+        if self._is_script:
             yield "", self._path.name, self._decoded(data)
             return
         try:
