@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from radiokit.faces.grading import descendants, seccomp
+from radiokit.faces.grading import descendants, landlock, seccomp
 from radiokit.faces.grading.limits import Limits
 from radiokit.faces.grading.sandbox import Sandbox
 
@@ -49,6 +49,8 @@ def everyday(x):
     one, other = socket.socketpair()
     one.send(b"x"); other.recv(1)
     subprocess.run(["/bin/sh", "-c", "exit 0"], check=True)
+    return x
+def pools(x):
     import multiprocessing
     with multiprocessing.get_context("fork").Pool(2) as pool:
         return np.array(pool.map(abs, x))
@@ -69,11 +71,30 @@ def shares(x):
     return kept[:1]
 def nests(x):
     os.chmod(".", 0o700)
-    for i in range(1500):
-        os.mkdir("d"); os.chdir("d")
+    for _ in range(40):  # no path can name the last of them
+        os.mkdir("d" * 250); os.chdir("d" * 250)
     open("file", "w").close()
     os.chmod("..", 0o100); os.chmod(".", 0)
     return x
+def reaches(x, paths):
+    # reading, listing and writing
+    found = []
+    for path in paths:
+        try: found.append(bool(os.listdir(path) if os.path.isdir(path) else open(path, "rb").read(1)))
+        except OSError: found.append(0)
+    return found
+def writes(x, paths):
+    found = []
+    for path in paths:
+        try: open(path + "/written", "w").close(); found.append(1)
+        except OSError: found.append(0)
+    return found
+def signals(x):
+    found = []
+    for pid in (os.getppid(), -1):
+        try: os.kill(pid, 0); found.append(1)
+        except OSError: found.append(0)
+    return found
 def sleeps(x):
     open("left", "w").close(); time.sleep(20)
 """
@@ -143,6 +164,8 @@ def test_the_filter_refuses_what_it_says(machine, architecture, numbers):
 def test_calls_are_refused_and_everyday_ones_are_not(path, namespaces):
     with Sandbox(path, namespaces=namespaces) as sandbox:
         np.testing.assert_array_equal(sandbox.call("everyday", np.array([1, 2])).values[0], [2, 4])
+        if namespaces and "root" in sandbox.load().protections:  # elsewhere /dev/shm is everybody's
+            np.testing.assert_array_equal(sandbox.call("pools", np.array([1, -2])).values[0], [1, 2])
         protections = sandbox.load().protections
         if os.uname().machine in seccomp.ARCHITECTURES:
             assert {"calls", "network"} <= set(protections)
@@ -235,3 +258,57 @@ def test_a_killed_parent_leaves_no_folder(path, tmp_path, namespaces):
         assert list(temporary.iterdir())
         parent.send_signal(signal.SIGKILL)
     assert until(lambda: not list(temporary.iterdir()))
+
+
+def test_files_need_no_namespaces(path, tmp_path):
+    beside = tmp_path / "beside"
+    beside.mkdir()
+    (beside / "answers").write_text("s3cret")
+    here = Path(descendants.__file__).parents[2]
+    with Sandbox(path, namespaces=False) as sandbox:
+        protections = sandbox.load().protections
+        closed = [
+            "/",
+            "/etc",
+            "/proc",
+            str(tmp_path),
+            str(beside),
+            str(beside / "answers"),
+            str(here / "__init__.py"),
+        ]
+        seen = [np.__file__, str(Path(np.__file__).parent), "/usr", "/dev/zero", "theirs.py", "."]
+        found = sandbox.call("reaches", 1.0, parameters={"paths": closed + seen}).values[0]
+        assert list(found[-len(seen) :]) == [1] * len(seen)
+        assert not any(found[: len(closed)]) or "files" not in protections
+        places = [str(beside), "/tmp", "/dev/shm", str(Path(np.__file__).parent), "."]
+        found = sandbox.call("writes", 1.0, parameters={"paths": places}).values[0]
+        assert found[-1] or os.getuid() != 0
+        assert not any(found[:-1]) or "files" not in protections
+        if "processes" in protections:
+            assert not sandbox.call("signals", 1.0).values[0][0]
+    assert "files" in protections or not landlocked()
+
+
+def landlocked():
+    """Whether Landlock is on, seen in a process of its own."""
+    code = "from radiokit.faces.grading.landlock import restrict\nprint(restrict(['/usr'], [], []))"
+    done = subprocess.run(
+        [sys.executable, "-c", f"import ctypes; ctypes.CDLL(None).prctl(38, 1, 0, 0, 0)\n{code}"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return "files" in done.stdout
+
+
+def test_what_is_hidden_is_in_no_rule(tmp_path):
+    for name in ("numpy", "radiokit/faces", "other"):
+        (tmp_path / name).mkdir(parents=True)
+    (tmp_path / "radiokit/faces/a.py").write_text("")
+    site = str(tmp_path)
+    rules = dict(landlock.allowed(site, [f"{site}/radiokit", "/elsewhere"]))
+    assert rules == {site: landlock.READ_DIR, f"{site}/numpy": landlock.READ, f"{site}/other": landlock.READ}
+    assert f"{site}/radiokit" in dict(landlock.allowed(site, [f"{site}/radiokit/faces"]))
+    assert dict(landlock.allowed(site, [f"{site}/rad"])) == {site: landlock.READ_DIR} | {
+        f"{site}/{name}": landlock.READ for name in ("numpy", "other", "radiokit")
+    }

@@ -19,6 +19,8 @@ from typing import Any
 
 __all__: list[str] = []
 
+PACKAGE = "radiokit.faces.grading."
+PARTS = ("sources", "imports", "protocol", "loading", "answers")
 HIGH = 40
 """The first file descriptor tried for the private pipes."""
 BRANCH_ENDED = 90
@@ -26,8 +28,8 @@ BRANCH_ENDED = 90
 
 
 def _beside(name: str) -> Any:
-    """Import a compiled file that lies beside this one, under a name that no submission has."""
-    module = sys.modules[f"_{name}"] = type(sys)(f"_{name}")
+    """Import a compiled file that lies beside this one; others of them know it by its full name."""
+    module = sys.modules[PACKAGE + name] = type(sys)(f"_{name}")
     with (Path(__file__).parent / f"{name}.pyc").open("rb") as file:
         exec(marshal.loads(file.read()[16:]), module.__dict__)
     return module
@@ -51,8 +53,11 @@ class _Child:
     """Reads requests, calls functions, writes answers; holds what it needs before the submission runs."""
 
     def __init__(self, requests: int, results: int) -> None:
-        self._protocol, self._loading, self._answers = map(_beside, ("protocol", "loading", "answers"))
-        self._finder = _beside("imports").Finder()
+        parts = {name: _beside(name) for name in PARTS}
+        for name in PARTS:  # a submission finds them under names that no other module has
+            sys.modules[f"_{name}"] = sys.modules.pop(PACKAGE + name)
+        self._protocol, self._loading, self._answers = (parts[name] for name in PARTS[-3:])
+        self._finder = parts["imports"].Finder()
         self._requests, self._results = requests, results
         self._pack, self._text = self._protocol.pack, self._protocol.plain_text
         self._read, self._write = os.read, os.write

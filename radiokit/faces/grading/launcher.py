@@ -16,7 +16,6 @@ from __future__ import annotations
 import json
 import marshal
 import os
-import resource
 import select
 import signal
 import sys
@@ -28,6 +27,8 @@ if TYPE_CHECKING:
 
 __all__: list[str] = []
 
+PARTS = ("descendants", "landlock", "namespaces", "rights", "seccomp")
+DEVICES = ("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom")
 FAILED = 97
 """Exit code when the walls that were asked for cannot be built here."""
 TOO_MUCH = -1
@@ -42,77 +43,10 @@ def _beside(name: str) -> Any:
     return module
 
 
-def _threads(uid: int) -> int:
-    """Return how many threads a user already runs: they count towards his limit."""
-    count = 0
-    for pid in os.listdir("/proc") if os.path.isdir("/proc/self") else []:
-        try:
-            if pid.isdigit() and os.stat(f"/proc/{pid}").st_uid == uid:
-                count += len(os.listdir(f"/proc/{pid}/task"))
-        except OSError:
-            continue
-    return count
-
-
-def _set_limits(limits: dict[str, int], processes: int) -> None:
-    wanted = {
-        "RLIMIT_CPU": limits["cpu_seconds"],
-        "RLIMIT_AS": limits["memory_bytes"],
-        "RLIMIT_NPROC": processes,
-        "RLIMIT_NOFILE": limits["open_files"],
-        "RLIMIT_FSIZE": limits["file_bytes"],
-        "RLIMIT_CORE": 0,
-    }
-    for name, value in wanted.items():
-        kind = getattr(resource, name, None)
-        if kind is not None:
-            hard = resource.getrlimit(kind)[1]
-            value = value if hard == resource.RLIM_INFINITY else min(value, hard)
-            try:
-                resource.setrlimit(kind, (value, value))
-            except (OSError, ValueError):  # macOS refuses RLIMIT_AS
-                pass
-
-
-def _may_read(uid: int, paths: list[str]) -> bool:
-    """Return whether another user could open these files."""
-    os.setegid(uid)
-    os.seteuid(uid)
-    try:
-        for path in paths:
-            with open(path, "rb"):
-                pass
-        return True
-    except OSError:
-        return False
-    finally:
-        os.seteuid(0)
-        os.setegid(0)
-
-
-def _give_up_rights(spec: dict[str, Any], home: str, own_users: bool) -> list[str]:
-    """Become nobody in particular, for good; return what was given up."""
-    done = []
-    for capability in range(64):
-        namespaces.control(namespaces.PR_CAPBSET_DROP, capability)
-    uid = spec["uid"]
-    if os.geteuid() == 0 and not own_users and hasattr(os, "setresuid"):
-        os.setgroups([])
-        if _may_read(uid, spec["needs"]):
-            os.chown(home, uid, uid)
-            os.setresgid(uid, uid, uid)
-            os.setresuid(uid, uid, uid)
-            done.append("user")
-    if namespaces.control(namespaces.PR_SET_NO_NEW_PRIVS, 1):
-        done.append("privileges")
-    namespaces.control(namespaces.PR_SET_PDEATHSIG, int(signal.SIGKILL))
-    return done
-
-
 def _start(
     spec: dict[str, Any], files: dict[str, dict[str, bytes]], own_users: bool, active: list[str]
 ) -> NoReturn:
-    """Become the child."""
+    """Become the child; ``active`` are the protections that hold so far."""
     os.setsid()
     inside = "root" in active
     box = "/box" if inside else spec["box"]
@@ -129,16 +63,24 @@ def _start(
     release = tuple(int(part) for part in os.uname().release.split("-")[0].split(".")[:2] if part.isdigit())
     fresh = inside and own_users and release >= (5, 14)  # there, a user namespace counts for itself
     counted = 3 if fresh else spec["threads"][uid]
-    _set_limits(spec["limits"], spec["limits"]["processes"] + counted)
-    spec["needs"] = [*spec["needs"], f"{box}/child.pyc"]
-    active = [*active, *_give_up_rights(spec, home, own_users)]
-    if os.getuid() != 0:  # root's processes are not counted
-        active.append("limits")
-    if not inside and "user" not in active:  # then it may kill its launcher
-        active = [name for name in active if name not in ("processes", "memory")]
+    rights.limit(spec["limits"], spec["limits"]["processes"] + counted)
+    for capability in range(64):
+        namespaces.control(namespaces.PR_CAPBSET_DROP, capability)
+    if not own_users and rights.become(spec["uid"], [*spec["needs"], f"{box}/child.pyc"], home):
+        active.append("user")
+    namespaces.control(namespaces.PR_SET_PDEATHSIG, int(signal.SIGKILL))
     os.chdir(home)
     namespaces.fix_addresses()
-    active += seccomp.install() if "privileges" in active else []
+    if rights.processes_are_counted():
+        active.append("limits")
+    held = []
+    if namespaces.control(namespaces.PR_SET_NO_NEW_PRIVS, 1):
+        readable = [*spec["visible"], box, "/proc" if inside else "/proc/self"]
+        writable = [home, *DEVICES, *(("/tmp", "/dev/shm") if inside else ())]
+        held = ["privileges", *landlock.restrict(readable, writable, spec["hidden"]), *seccomp.install()]
+    if not (inside or "user" in active or "signals" in held):  # then it may kill its launcher
+        active = [name for name in active if name not in ("processes", "memory")]
+    active += held
     environment = {
         "HOME": home,
         "TMPDIR": home,
@@ -261,7 +203,7 @@ def _main() -> None:
         kind: {name: _contents(path) for name, path in spec[kind].items()} for kind in ("programs", "files")
     }
     spec["given"] = sum(len(data) + 4096 for data in files["files"].values())
-    spec["threads"] = {uid: _threads(uid) for uid in {os.getuid(), spec["uid"]}}
+    spec["threads"] = {uid: rights.threads(uid) for uid in {os.getuid(), spec["uid"]}}
     folder = os.open(os.path.dirname(spec["box"]), os.O_RDONLY | os.O_DIRECTORY)
     proc = os.open("/proc", os.O_RDONLY | os.O_DIRECTORY) if os.path.isdir("/proc/self") else -1
     watched = descendants.watchable(proc)
@@ -299,5 +241,5 @@ def _main() -> None:
 
 
 if __name__ == "__main__":
-    descendants, namespaces, seccomp = (_beside(name) for name in ("descendants", "namespaces", "seccomp"))
+    descendants, landlock, namespaces, rights, seccomp = map(_beside, PARTS)
     _main()

@@ -17,6 +17,7 @@ PROTECTIONS = {
     "user": "it runs as a user who owns nothing",
     "calls": "what a program of numbers does not need of the system's kernel is refused",
     "network": "there is no network",
+    "files": "of the file system only Python and the submission can be read, only its folder be written",
     "root": "of the file system only Python and the submission are there, the rest of the disk is not",
     "proc": "other processes cannot be seen",
 }

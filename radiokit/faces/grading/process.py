@@ -29,8 +29,8 @@ from radiokit.faces.grading.result import steady
 __all__ = ["ChildProcess", "StoppedError"]
 
 HERE = Path(__file__).resolve().parent
-PROGRAMS = ("child", "protocol", "imports", "loading", "answers")
-LAUNCHING = ("launcher", "descendants", "namespaces", "seccomp")
+PROGRAMS = ("child", "sources", "imports", "protocol", "loading", "answers")
+LAUNCHING = ("launcher", "descendants", "landlock", "namespaces", "rights", "seccomp")
 KEPT = 2000
 """How many characters of what is printed are kept."""
 SYSTEM = (
@@ -74,7 +74,7 @@ class ChildProcess:
                 _command(self.folder, limits, files, results, namespaces),
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE,
+                stderr=subprocess.STDOUT,  # what is printed keeps its order
                 pass_fds=(results,),
                 start_new_session=True,
                 env={"PATH": "/usr/bin:/bin", "LANG": "C.UTF-8"},
@@ -88,11 +88,10 @@ class ChildProcess:
             os.close(results)
         assert process.stdin is not None
         assert process.stdout is not None
-        assert process.stderr is not None
         self._requests = os.dup(process.stdin.fileno())
         process.stdin.close()
-        self._streams = (process.stdout, process.stderr)
-        for descriptor in (self._requests, self._results, *(each.fileno() for each in self._streams)):
+        self._printing = process.stdout
+        for descriptor in (self._requests, self._results, self._printing.fileno()):
             os.set_blocking(descriptor, False)
 
     def exchange(self, request: bytes, seconds: float) -> tuple[dict[str, Any], list[Array]]:
@@ -110,7 +109,7 @@ class ChildProcess:
         whole = Assembler(self._limits.answer_bytes)
         left = memoryview(request)
         with selectors.DefaultSelector() as selector:
-            for stream in (self._results, *(each.fileno() for each in self._streams)):
+            for stream in (self._results, self._printing.fileno()):
                 selector.register(stream, selectors.EVENT_READ)
             if left:
                 selector.register(self._requests, selectors.EVENT_WRITE)
@@ -142,10 +141,11 @@ class ChildProcess:
                             return whole.message()
 
     def printed(self) -> str:
-        """Return the beginning of what was printed since this was asked last."""
+        """Return the beginning of what was printed since this was asked last, as lines that can be shown."""
         text = steady(bytes(self._output).decode(errors="replace"), self.folder)
         self._output.clear()
-        return text[:KEPT]
+        lines = text[:KEPT].replace("\r\n", "\n").replace("\r", "\n").expandtabs()
+        return "".join(letter if letter.isprintable() or letter == "\n" else "?" for letter in lines)
 
     def close(self) -> None:
         """End the child and all its descendants, and remove what it wrote."""
@@ -160,8 +160,7 @@ class ChildProcess:
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
             process.wait()
-        for stream in self._streams:
-            stream.close()
+        self._printing.close()
         _remove(self.folder)
 
     def _keep(self, data: bytes) -> None:
@@ -172,9 +171,8 @@ class ChildProcess:
 
     def _drain(self) -> None:
         """Keep what was printed until now."""
-        for stream in self._streams:
-            with contextlib.suppress(StoppedError, BlockingIOError):
-                self._keep(os.read(stream.fileno(), 1 << 16))
+        with contextlib.suppress(StoppedError, BlockingIOError):
+            self._keep(os.read(self._printing.fileno(), 1 << 16))
 
     def _ending(self) -> str:
         """Say how the child came to its end."""

@@ -30,6 +30,12 @@ REFUSED = {
     "process_madvise": (440, 440),
     "kcmp": (312, 272),
     "pidfd_getfd": (438, 438),
+    "setpriority": (141, 140),
+    "ioprio_set": (251, 30),
+    "sched_setparam": (142, 118),
+    "sched_setscheduler": (144, 119),
+    "sched_setaffinity": (203, 122),
+    "sched_setattr": (314, 274),
     # namespaces and mounts
     "unshare": (272, 97),
     "setns": (308, 268),
@@ -102,7 +108,7 @@ REFUSED = {
 }
 """What is refused: its number on x86_64 and on aarch64."""
 
-SOCKETPAIR, CLONE, CLONE3 = (53, 199), (56, 220), 435
+SOCKETPAIR, PRLIMIT, CLONE, CLONE3 = (53, 199), (302, 261), (56, 220), 435
 AF_UNIX = 1
 NEW_NAMESPACES = 0x7E020080  # CLONE_NEWNS, NEWCGROUP, NEWUTS, NEWIPC, NEWUSER, NEWPID, NEWNET, NEWTIME
 X32 = 0x40000000
@@ -134,10 +140,12 @@ def program(machine: str) -> bytes:
         *((EQUAL, number, "refuse", "") for number in numbers if number is not None),
         (EQUAL, CLONE3, "unknown", ""),  # its flags are out of sight; the C library then uses clone
         (EQUAL, SOCKETPAIR[column], "pair", ""),
+        (EQUAL, PRLIMIT[column], "limit", ""),
         (EQUAL, CLONE[column], "clone", "allow"),
     ]
     ends = {
         "pair": [(LOAD, FIRST, "", ""), (EQUAL, AF_UNIX, "allow", "refuse")],
+        "limit": [(LOAD, FIRST, "", ""), (EQUAL, 0, "allow", "refuse")],
         "clone": [(LOAD, FIRST, "", ""), (ANY_BIT, NEW_NAMESPACES, "refuse", "allow")],
         "allow": [(RETURN, ALLOW, "", "")],
         "refuse": [(RETURN, ERRNO | EPERM, "", "")],
