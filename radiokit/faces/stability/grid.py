@@ -91,16 +91,17 @@ DARK = 1e-290
 """Values below this [sr⁻¹] count as 0: an exponential in them may have underflowed, below e⁻⁷⁰⁸."""
 
 
-def worst_ulps(kernel: Any, twin: Twin, wi: FloatArray, wo: FloatArray) -> float:
+def worst_ulps(kernel: Any, twin: Twin, wi: FloatArray, wo: FloatArray, *, least: float = 0.0) -> float:
     """Return the largest error of ``kernel(wi, wo)``, in ulps over max(1, condition number).
 
     Condition numbers, which cost a score of evaluations each, are taken from the largest error in ulps
-    downwards, until no error that is left can exceed what was found.
+    downwards, until no error that is left can exceed what was found. Where no error exceeds ``least``, that
+    is returned: who only asks whether one does, is soon answered.
     """
     values = kernel(wi, wo)
     exact = [twin.evaluate(*pair) for pair in zip(wi, wo, strict=True)]
     raw = np.array([value_ulps(*row) for row in zip(values, exact, strict=True)])
-    worst = 0.0
+    worst = least
     for k in np.argsort(-raw, kind="stable"):
         if raw[k] <= worst:
             break
