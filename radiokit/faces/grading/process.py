@@ -183,6 +183,8 @@ class ChildProcess:
         self._drain()
         if code == -signal.SIGUSR1:
             return f"used more than {self._limits.memory_bytes / 2**30:.3g} GiB of memory"
+        if code == -signal.SIGUSR2:
+            return f"ran more than {self._limits.processes} processes"
         number = -code if code < 0 else code - 128
         if number in set(signal.Signals):
             return f"was ended by {signal.Signals(number).name}"
