@@ -1,0 +1,261 @@
+"""Law texts: what the judges' verdicts on a student's BRDF are in his own words, English and Russian."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from radiokit.checks.probes import channels, polar
+from radiokit.contracts.bsdf import BSDF, FloatArray
+from radiokit.faces.grading.protocol import plain_text
+from radiokit.faces.grading.words import Words, say
+from radiokit.facts.errors import CallableError
+from radiokit.facts.verdict import Outcome, Verdict
+
+__all__ = ["LAW_SENTENCES", "failed", "found", "remarks", "share_of_light", "tell"]
+
+LAW_SENTENCES: Mapping[str, Words] = {
+    "did": {"en": "{function} {problem}", "ru": "{function}: {problem}"},
+    "raised": {"en": "{function} raised {problem}", "ru": "{function}: ошибка {problem}"},
+    "slow": {
+        "en": "; judging takes about {pairs} pairs of directions: compute with whole arrays, without loops",
+        "ru": "; для проверки нужно около {pairs} пар направлений: считайте сразу целыми массивами, без циклов",
+    },
+    "at": {"en": " at {place}", "ru": " при {place}"},
+    "directions": {
+        "en": "wi: θ = {wi[0]}, φ = {wi[1]}; wo: θ = {wo[0]}, φ = {wo[1]}",
+        "ru": "wi: θ = {wi[0]}, φ = {wi[1]}; wo: θ = {wo[0]}, φ = {wo[1]}",
+    },
+    "given": {"en": "for {parameters}: {text}", "ru": "при {parameters}: {text}"},
+    "finite": {"en": "finite and nowhere negative", "ru": "значения конечны и нигде не отрицательны"},
+    "not-finite": {"en": "gives {value} at {place}", "ru": "даёт {value} при {place}"},
+    "negative": {
+        "en": "is negative: f = {value} at {place}",
+        "ru": "отрицательна: f = {value} при {place}",
+    },
+    "reciprocal": {
+        "en": "reciprocal at all {pairs} pairs of directions that were tried",
+        "ru": "обратимость выполняется на всех проверенных парах направлений ({pairs})",
+    },
+    "not-reciprocal": {
+        "en": "is not reciprocal: f(wi, wo) = {one}, but with the directions exchanged {two} ({place})",
+        "ru": "нарушает обратимость: f(wi, wo) = {one}, а если поменять направления местами, {two} ({place})",
+    },
+    "conserves": {
+        "en": "reflects at most {share} of the light, at θ = {theta}",
+        "ru": "отражает не более {share} света, больше всего при θ = {theta}",
+    },
+    "gains": {
+        "en": "gains energy: at θ = {theta} it reflects {share} of the light",
+        "ru": "нарушает сохранение энергии: при θ = {theta} отражает {share} света",
+    },
+    "gains-for-viewer": {
+        "en": "gains energy: for a viewer at θ = {theta}, ∫ f cos θi dωi = {value}, and at most 1 is right",
+        "ru": "нарушает сохранение энергии: для наблюдателя под углом θ = {theta} интеграл "
+        "∫ f cos θi dωi = {value}, а должен быть не больше 1",
+    },
+    "to-grazing": {"en": ", and more as θ → 90°", "ru": ", а при θ → 90° ещё больше"},
+    "unclear": {
+        "en": "is too near the limit to tell: it reflects {share} of the light ± {error}",
+        "ru": "слишком близка к пределу, чтобы сказать точно: отражает {share} света ± {error}",
+    },
+    "unjudged": {
+        "en": "cannot be judged for {law}: its values are not finite, or change when it is asked again",
+        "ru": "нельзя проверить ({law}): значения не конечны или меняются при повторном вызове",
+    },
+    "should-break": {
+        "en": "one is asked for that breaks this law",
+        "ru": "а нужна ДФО, которая этот закон нарушает",
+    },
+    "black": {
+        "en": "reflects at most {share} of the light, and at least {least} is asked for: a black surface obeys "
+        "every law",
+        "ru": "отражает не более {share} света, а требуется не менее {least}: чёрная поверхность "
+        "подчиняется любым законам",
+    },
+    "stranger": {
+        "en": "is not the function that is asked for, so that the laws it obeys earn nothing",
+        "ru": "это не та функция, которую просили, поэтому за выполнение законов баллов нет",
+    },
+    "factor": {
+        "en": "is {factor} times the function that is asked for",
+        "ru": "равна нужной функции, умноженной на {factor}",
+    },
+    "float32": {
+        "en": "computed in float32: judged to its seven digits, use float64",
+        "ru": "вычислена в float32: проверена с точностью до семи цифр, используйте float64",
+    },
+    "prints": {
+        "en": "it prints while it computes: remove that",
+        "ru": "во время вычислений она печатает: уберите это",
+    },
+    "writes": {
+        "en": "it writes into the arrays that it is given: work on copies",
+        "ru": "она изменяет переданные ей массивы: работайте с копиями",
+    },
+    "mixes": {
+        "en": "it mixes up the rows of an array, and was called pair by pair: sum over the last axis, axis=-1",
+        "ru": "она смешивает строки массива и вызывалась по одной паре: суммируйте по последней оси, axis=-1",
+    },
+    "below": {
+        "en": "it is not 0 below the horizon: make it 0 where either cosine is not above 0",
+        "ru": "под горизонтом она не равна 0: верните 0, если хотя бы один косинус не больше 0",
+    },
+}
+"""What is said of the laws; what any judge says stands in ``words``."""
+
+LAW_NAMES: Mapping[str, Words] = {
+    "values": {"en": "its values", "ru": "значения"},
+    "reciprocity": {"en": "reciprocity", "ru": "обратимость"},
+    "energy": {"en": "conservation of energy", "ru": "сохранение энергии"},
+}
+
+ASKED = 100_000
+"""About how many pairs a function is asked for at least."""
+
+_MARKS = {"float32": "returns float", "writes": "writes into its inputs", "mixes": "mixes up the rows"}
+
+
+def tell(language: str, key: str, **values: Any) -> str:
+    """Return a sentence.
+
+    >>> tell("en", "at", place="θ = 30°")
+    ' at θ = 30°'
+    """
+    return LAW_SENTENCES[key][language].format(**values)
+
+
+def found(verdict: Verdict, model: BSDF, language: str, *, mutual: bool) -> tuple[str, str]:
+    """Return the name of what a verdict found and the sentence on it.
+
+    ``mutual`` says that f is known to be reciprocal: then an integral over ``wi`` is also what light reflects.
+    """
+    if verdict.check == "values":
+        return _values(verdict, language)
+    if _is_unjudged(verdict):
+        return "not-finite", tell(language, "unjudged", law=LAW_NAMES[verdict.check][language])
+    if verdict.check == "energy":
+        return _energy(verdict, language, mutual)
+    if verdict.outcome is not Outcome.VIOLATED:
+        return "reciprocal", tell(language, "reciprocal", pairs=verdict.details["pairs"])
+    wi, wo, one, two = _tidied(verdict, model)
+    digits = next((n for n in (3, 5, 8) if f"{one:.{n}g}" != f"{two:.{n}g}"), 12)
+    place = _place(wi, wo, language)
+    values = {"one": f"{one:.{digits}g}", "two": f"{two:.{digits}g}", "place": place}
+    return "not-reciprocal", tell(language, "not-reciprocal", **values)
+
+
+def failed(error: CallableError, language: str) -> str:
+    """Return the sentence on a function that raised, was stopped, or returned what is no value."""
+    function, problem = error.fields["function"], plain_text(error.fields["problem"])
+    key = "raised" if problem.startswith("raised ") else "did"
+    text = tell(language, key, function=function, problem=problem.removeprefix("raised "))
+    if "took longer than" in problem:
+        text += tell(language, "slow", pairs=ASKED)
+    if error.fields.get("wi") is None:
+        return text
+    return text + tell(language, "at", place=_place(error.fields["wi"], error.fields["wo"], language))
+
+
+def remarks(notes: tuple[str, ...], language: str) -> list[str]:
+    """Return a sentence for each habit among a report's notes that the student should know of."""
+    said = [key for key, mark in _MARKS.items() if any(mark in note for note in notes)]
+    if any(" prints: " in note and "Warning: " not in note for note in notes):
+        said.append("prints")
+    if any("below the horizon" in note for note in notes):
+        said.append("below")
+    return [tell(language, key) for key in said]
+
+
+def share_of_light(value: float) -> str:
+    """Return a share as a percentage, with digits enough to show an excess over the whole.
+
+    >>> share_of_light(1.07478), share_of_light(1.0000012), share_of_light(1), share_of_light(184.7)
+    ('107.5 %', '100.00012 %', '100 %', '18470 %')
+    """
+    percent = 100 * float(value)
+    if percent > 100 * (1 + 1e-12):
+        digits = next((n for n in (4, 6, 8, 10) if float(f"{percent:.{n}g}") > 100), 14)
+    else:
+        digits = 4
+    return f"{float(f'{percent:.{digits}g}'):.12g} %"
+
+
+def _is_unjudged(verdict: Verdict) -> bool:
+    unsure = verdict.outcome is Outcome.INCONCLUSIVE
+    return unsure and (verdict.estimate is None or verdict.message.startswith("not repeatable"))
+
+
+def _values(verdict: Verdict, language: str) -> tuple[str, str]:
+    if verdict.outcome is Outcome.HOLDS or verdict.witness is None:
+        return "finite", tell(language, "finite")
+    values = verdict.witness.values
+    if "f" not in values:
+        return "not-repeatable", say(language, "not-repeatable")
+    place = _place(*(verdict.witness.directions[name] for name in ("wi", "wo")), language)
+    seen = np.atleast_1d(np.asarray(values["f"], dtype=float))
+    if np.isfinite(seen).all():
+        return "negative", tell(language, "negative", value=f"{seen.min():.3g}", place=place)
+    bad = float(seen[~np.isfinite(seen)][0])
+    name = "NaN" if np.isnan(bad) else f"{bad:g}"
+    return "not-finite", tell(language, "not-finite", value=name, place=place)
+
+
+def _energy(verdict: Verdict, language: str, mutual: bool) -> tuple[str, str]:
+    assert verdict.estimate is not None
+    value = float(np.max(verdict.estimate.value))
+    details = verdict.details
+    theta = _degrees(details["theta_deg"])
+    if not details["isotropic"] and details["theta_deg"] > 0:
+        theta += f", φ = {_degrees(details['phi_deg'])}"
+    share = share_of_light(value)
+    if verdict.outcome is Outcome.HOLDS:
+        return "conserves", tell(language, "conserves", share=share, theta=theta)
+    if verdict.outcome is Outcome.INCONCLUSIVE:
+        error = f"{100 * float(np.max(verdict.estimate.error)):.1g} %"
+        return "unclear", tell(language, "unclear", share=share, error=error)
+    key = "gains" if mutual or details["fixed"] == "wi" else "gains-for-viewer"
+    text = tell(language, key, share=share, theta=theta, value=f"{value:.6g}")
+    if details["approached_at_grazing"]:
+        text += tell(language, "to-grazing")
+    return "gains-energy", text
+
+
+def _tidied(verdict: Verdict, model: BSDF) -> tuple[FloatArray, FloatArray, float, float]:
+    """Return a witness of broken reciprocity at angles that are easily typed, if one is as telling."""
+    assert verdict.witness is not None
+    wi, wo = (np.asarray(verdict.witness.directions[name], dtype=float) for name in ("wi", "wo"))
+    angles = np.array([_angles(wi), _angles(wo)])
+    steps = np.array([10.0, 5.0, 1.0])
+    near = steps[:, None, None] * np.round(angles / steps[:, None, None])
+    near[:, :, 0] = np.minimum(near[:, :, 0], 90 - steps[:, None])
+    w = polar(np.cos(np.radians(near[:, :, 0])), np.radians(near[:, :, 1]))
+    first, second = np.vstack([w[:, 0], wi]), np.vstack([w[:, 1], wo])
+    one, two = channels(model.evaluate(first, second)), channels(model.evaluate(second, first))
+    with np.errstate(all="ignore"):
+        gap = np.abs(one - two) / np.maximum(np.maximum(np.abs(one), np.abs(two)), 1e-300)
+    worst = gap.max(axis=1)
+    row = int(np.argmax(worst >= 0.5 * worst[-1]))
+    k = int(np.argmax(gap[row]))
+    return first[row], second[row], float(one[row, k]), float(two[row, k])
+
+
+def _angles(w: Any) -> tuple[float, float]:
+    """Return θ and φ [degrees]."""
+    return (
+        float(np.degrees(np.arctan2(np.hypot(w[0], w[1]), w[2]))),
+        float(np.degrees(np.arctan2(w[1], w[0])) % 360),
+    )
+
+
+def _degrees(angle: float) -> str:
+    """Return an angle in as few digits as tell it from the horizon."""
+    rough = f"{angle:.4g}"
+    return f"{rough if rough != '90' else f'{angle:.8g}'}°"
+
+
+def _place(wi: Any, wo: Any, language: str) -> str:
+    pairs = {name: tuple(_degrees(angle) for angle in _angles(w)) for name, w in (("wi", wi), ("wo", wo))}
+    return tell(language, "directions", **pairs)
