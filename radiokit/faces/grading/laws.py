@@ -160,7 +160,7 @@ class Laws:
         return self.weights.get(law, 1.0)
 
     def _report(self, model: BSDF) -> Report:
-        """Return the judges' report, with energy's verdict from a finer search where a coarse one is unsure."""
+        """Return the judges' report, with energy's verdict from a finer search where the first is unsure."""
         first, finer = FEWER_EVALUATIONS if is_pairwise(model) else EVALUATIONS
         laws = {*self.laws, "energy"} if self.least else set(self.laws)
         report = check(
@@ -205,7 +205,7 @@ class Laws:
     def _compared(
         self, model: BSDF, given: Mapping[str, Any], language: str, hints: Mapping[str, Mapping[str, str]]
     ) -> tuple[tuple[str, float, str], bool]:
-        """Return the misconception, its confidence and its sentence, and whether f is none that was asked for."""
+        """Return the misconception, its confidence and its sentence, and whether f was not asked for at all."""
         assert self.reference is not None
         meant = self.reference(**given)
         wi, wo = pairs(COMPARED, meant)
@@ -215,7 +215,7 @@ class Laws:
             return nothing, True
         if not np.isfinite(answer).all():
             return nothing, False  # the judge of values says so
-        if np.ptp(answer) == 0 and (np.ptp(right) > 0 or not answer.any() and right.any()):
+        if np.ptp(answer) == 0 and (np.ptp(right) > 0 or (right.any() and not answer.any())):
             return nothing, True
 
         def truth(wi: Any, wo: Any, **_: Any) -> Any:

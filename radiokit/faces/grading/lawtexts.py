@@ -21,7 +21,7 @@ LAW_SENTENCES: Mapping[str, Words] = {
     "raised": {"en": "{function} raised {problem}", "ru": "{function}: ошибка {problem}"},
     "slow": {
         "en": "; judging takes about {pairs} pairs of directions: compute with whole arrays, without loops",
-        "ru": "; для проверки нужно около {pairs} пар направлений: считайте сразу целыми массивами, без циклов",
+        "ru": "; для проверки нужно около {pairs} пар направлений: считайте целыми массивами, без циклов",
     },
     "at": {"en": " at {place}", "ru": " при {place}"},
     "directions": {
@@ -70,8 +70,8 @@ LAW_SENTENCES: Mapping[str, Words] = {
         "ru": "а нужна ДФО, которая этот закон нарушает",
     },
     "black": {
-        "en": "reflects at most {share} of the light, and at least {least} is asked for: a black surface obeys "
-        "every law",
+        "en": "reflects at most {share} of the light, and at least {least} is asked for: a black surface "
+        "obeys every law",
         "ru": "отражает не более {share} света, а требуется не менее {least}: чёрная поверхность "
         "подчиняется любым законам",
     },
@@ -96,8 +96,8 @@ LAW_SENTENCES: Mapping[str, Words] = {
         "ru": "она изменяет переданные ей массивы: работайте с копиями",
     },
     "mixes": {
-        "en": "it mixes up the rows of an array, and was called pair by pair: sum over the last axis, axis=-1",
-        "ru": "она смешивает строки массива и вызывалась по одной паре: суммируйте по последней оси, axis=-1",
+        "en": "it mixes up the rows of an array, and was called pair by pair: sum over axis=-1",
+        "ru": "она смешивает строки массива и вызывалась по одной паре: суммируйте по axis=-1",
     },
     "below": {
         "en": "it is not 0 below the horizon: make it 0 where either cosine is not above 0",
@@ -130,7 +130,7 @@ def tell(language: str, key: str, **values: Any) -> str:
 def found(verdict: Verdict, model: BSDF, language: str, *, mutual: bool) -> tuple[str, str]:
     """Return the name of what a verdict found and the sentence on it.
 
-    ``mutual`` says that f is known to be reciprocal: then an integral over ``wi`` is also what light reflects.
+    ``mutual`` says that f is reciprocal: then an integral over ``wi`` is also the share that is reflected.
     """
     if verdict.check == "values":
         return _values(verdict, language)
@@ -194,7 +194,7 @@ def _values(verdict: Verdict, language: str) -> tuple[str, str]:
     values = verdict.witness.values
     if "f" not in values:
         return "not-repeatable", say(language, "not-repeatable")
-    place = _place(*(verdict.witness.directions[name] for name in ("wi", "wo")), language)
+    place = _place(verdict.witness.directions["wi"], verdict.witness.directions["wo"], language)
     seen = np.atleast_1d(np.asarray(values["f"], dtype=float))
     if np.isfinite(seen).all():
         return "negative", tell(language, "negative", value=f"{seen.min():.3g}", place=place)

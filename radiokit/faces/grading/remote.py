@@ -113,7 +113,7 @@ def remote_bsdf(sandbox: Sandbox, function: str, *, parameters: Mapping[str, Any
 
 
 def is_pairwise(model: BSDF) -> bool:
-    """Return whether a BSDF in a sandbox is a function of one pair, which is much slower than one of arrays."""
+    """Return whether a BSDF in a sandbox is a function of one pair, and so slower than one of arrays."""
     function = getattr(model, "function", None)
     return isinstance(function, _Remote) and function.mode != "batch"
 
