@@ -10,15 +10,11 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from radiokit.checks.judge import check
-from radiokit.checks.probes import pairs
 from radiokit.contracts.bsdf import BSDF
-from radiokit.faces.diagnosis.diagnose import diagnose
-from radiokit.faces.diagnosis.result import Diagnosis
 from radiokit.faces.grading.finding import Callee, Finding
-from radiokit.faces.grading.lawtexts import failed, found, remarks, share_of_light, tell
-from radiokit.faces.grading.protocol import Array
+from radiokit.faces.grading.lawtexts import failed, found, law_name, remarks, share_of_light, tell
+from radiokit.faces.grading.likeness import Likeness, compared
 from radiokit.faces.grading.remote import is_pairwise
-from radiokit.faces.grading.values import SURE, hint_for
 from radiokit.faces.grading.words import say
 from radiokit.facts.errors import CallableError, ParameterError
 from radiokit.facts.report import Report
@@ -35,9 +31,6 @@ EVALUATIONS = 1_000_000, 16_000_000
 
 FEWER_EVALUATIONS = 100_000, 1_000_000
 """The same for a function of one pair, which is looped over."""
-
-COMPARED = 256
-"""Pairs at which a function is compared with the one that it should be."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -123,37 +116,39 @@ class Laws:
         wrong: dict[str, tuple[str, str]] = {}  # by law: what was found, and the sentence
         right: dict[str, str] = {}
         notes: list[str] = []
-        suspicion: tuple[str, float, str] = "", 0.0, ""
-        refused = ""
+        refused, like = "", Likeness()
         try:
-            for given in chosen:
-                model = callee.bsdf(given)
+            models = [callee.bsdf(given) for given in chosen]
+            for model, given in zip(models, chosen, strict=True):
                 report = self._report(model)
                 notes += report.notes
                 for verdict in report:
                     name, text, good = self._weighed(verdict, report, model, language)
-                    law = verdict.check
                     if not good:
-                        wrong.setdefault(law, (name, _with(given if len(chosen) > 1 else {}, text, language)))
-                    right.setdefault(law, text)
+                        text = _with(given if len(chosen) > 1 else {}, text, language)
+                        wrong.setdefault(verdict.check, (name, text))
+                    right.setdefault(verdict.check, text)
                 refused = refused or self._too_dark(report, language)
-                if self.reference is not None and not suspicion[2] and not refused:
-                    suspicion, stranger = self._compared(model, given, language, hints)
-                    refused = tell(language, "stranger") if stranger else ""
+            if self.reference is not None and not refused:
+                meant = [self.reference(**given) for given in chosen]
+                like = compared(models, meant, chosen, variants=self.variants, hints=hints, language=language)
+                refused = tell(language, "stranger") if like.stranger else ""
         except CallableError as error:
             return Finding(share=0.0, text=failed(error, language))
         kept = sum(self._weight(law) for law in self.laws if law not in wrong)
-        share = 0.0 if refused else kept / sum(self._weight(law) for law in self.laws)
-        texts = [text for _, text in wrong.values()]
-        texts += [each for each in (suspicion[2], refused) if each]
-        if not texts:
+        texts = [text for name, text in wrong.values() if name != "unjudged"]
+        unjudged = [law_name(law, language) for law, (name, _) in wrong.items() if name == "unjudged"]
+        texts += [tell(language, "unjudged", laws=", ".join(unjudged))] if unjudged else []
+        texts += [refused] if refused else []
+        if not texts and not like.text:
             texts = [f"{say(language, 'full')}: {', '.join(right[law] for law in self.laws if law in right)}"]
-        names = [suspicion[0], *(name for name, _ in wrong.values())]
+        said = "; ".join([*texts, *remarks(tuple(notes), language)])
+        names = [like.name, *(name for name, _ in wrong.values()), "not-the-model" if refused else ""]
         return Finding(
-            share=share,
-            text="; ".join([*texts, *remarks(tuple(notes), language)]),
-            diagnosis=next((name for name in names if name), "not-the-model" if refused else ""),
-            confidence=suspicion[1] if suspicion[0] else 1.0 if wrong or refused else 0.0,
+            share=0.0 if refused else kept / sum(self._weight(law) for law in self.laws),
+            text=". ".join(each for each in (said, like.text) if each),
+            diagnosis=next((name for name in names if name), ""),
+            confidence=like.confidence if like.name else float(bool(wrong or refused)),
         )
 
     def _weight(self, law: str) -> float:
@@ -201,61 +196,6 @@ class Laws:
         if most >= self.least * (1 - self.tolerance):
             return ""
         return tell(language, "black", share=share_of_light(most), least=share_of_light(self.least))
-
-    def _compared(
-        self, model: BSDF, given: Mapping[str, Any], language: str, hints: Mapping[str, Mapping[str, str]]
-    ) -> tuple[tuple[str, float, str], bool]:
-        """Return the misconception, its confidence and its sentence, and whether f was not asked for at all."""
-        assert self.reference is not None
-        meant = self.reference(**given)
-        wi, wo = pairs(COMPARED, meant)
-        answer, right = np.asarray(model.evaluate(wi, wo)), np.asarray(meant.evaluate(wi, wo))
-        nothing = "", 0.0, ""
-        if answer.shape != right.shape or right.ndim != 1:
-            return nothing, True
-        if not np.isfinite(answer).all():
-            return nothing, False  # the judge of values says so
-        if np.ptp(answer) == 0 and (np.ptp(right) > 0 or (right.any() and not answer.any())):
-            return nothing, True
-
-        def truth(wi: Any, wo: Any, **_: Any) -> Any:
-            return meant.evaluate(wi, wo)
-
-        named = {name: np.asarray(wrong(wi, wo, **given)) for name, wrong in self.variants.items()}
-        numbers = {name: value for name, value in given.items() if isinstance(value, int | float)}
-        inputs = {"wi": wi, "wo": wo, **{k: np.full(COMPARED, float(v)) for k, v in numbers.items()}}
-        rtol = 2e-4 if model.precision > 1e-10 else None
-        result: Diagnosis | None = None
-        for variants in ([named] if named else []) + [truth]:
-            result = diagnose(answer, right, inputs=inputs, variants=variants, language=language, rtol=rtol)
-            if result.right or _is_sure(result):
-                break
-        assert result is not None
-        if result.right:
-            return nothing, False
-        if _is_sure(result):
-            first = result.suspicions[0]
-            return (first.name, round(first.confidence, 2), hint_for(first, hints, language)), False
-        if result.suspicions:
-            likely = " / ".join(hint_for(each, hints, language) for each in result.suspicions[:2])
-            return ("", 0.0, say(language, "one-of", names=likely)), False
-        factor = _factor(answer, right, rtol or 1e-6)
-        if factor is None:
-            return nothing, True
-        return ("other-factor", 1.0, tell(language, "factor", factor=f"{factor:.6g}")), False
-
-
-def _is_sure(result: Diagnosis) -> bool:
-    return result.first is not None and result.first.confidence >= SURE and not result.ambiguous
-
-
-def _factor(answer: Array, right: Array, rtol: float) -> float | None:
-    """Return what constant times ``right`` the answer is, if it is one."""
-    lit = right != 0
-    if not lit.any() or answer[~lit].any():
-        return None
-    factor = float(np.median(answer[lit] / right[lit]))
-    return factor if np.allclose(answer, factor * right, rtol=10 * rtol, atol=0) else None
 
 
 def _with(given: Mapping[str, Any], text: str, language: str) -> str:

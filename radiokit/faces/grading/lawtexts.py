@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,7 @@ from radiokit.faces.grading.words import Words, say
 from radiokit.facts.errors import CallableError
 from radiokit.facts.verdict import Outcome, Verdict
 
-__all__ = ["LAW_SENTENCES", "failed", "found", "remarks", "share_of_light", "tell"]
+__all__ = ["LAW_SENTENCES", "failed", "found", "law_name", "place_of", "remarks", "share_of_light", "tell"]
 
 LAW_SENTENCES: Mapping[str, Words] = {
     "did": {"en": "{function} {problem}", "ru": "{function}: {problem}"},
@@ -61,9 +61,13 @@ LAW_SENTENCES: Mapping[str, Words] = {
         "en": "is too near the limit to tell: it reflects {share} of the light ± {error}",
         "ru": "слишком близка к пределу, чтобы сказать точно: отражает {share} света ± {error}",
     },
+    "even": {
+        "en": "reflects {share} of the light at every angle",
+        "ru": "отражает {share} света под любым углом",
+    },
     "unjudged": {
-        "en": "cannot be judged for {law}: its values are not finite, or change when it is asked again",
-        "ru": "нельзя проверить ({law}): значения не конечны или меняются при повторном вызове",
+        "en": "and so cannot be judged for {laws}",
+        "ru": "поэтому нельзя проверить: {laws}",
     },
     "should-break": {
         "en": "one is asked for that breaks this law",
@@ -79,6 +83,11 @@ LAW_SENTENCES: Mapping[str, Words] = {
         "en": "is not the function that is asked for, so that the laws it obeys earn nothing",
         "ru": "это не та функция, которую просили, поэтому за выполнение законов баллов нет",
     },
+    "at-few": {
+        "en": "is right at most pairs of directions and wrong at {bad} of {count}, as at {place}",
+        "ru": "верна почти всюду, но не на {bad} из {count} пар направлений, например при {place}",
+    },
+    "perhaps": {"en": "perhaps: {name}", "ru": "возможно: {name}"},
     "factor": {
         "en": "is {factor} times the function that is asked for",
         "ru": "равна нужной функции, умноженной на {factor}",
@@ -127,22 +136,32 @@ def tell(language: str, key: str, **values: Any) -> str:
     return LAW_SENTENCES[key][language].format(**values)
 
 
+def law_name(law: str, language: str) -> str:
+    """Return what a law is called in a sentence.
+
+    >>> law_name("energy", "ru")
+    'сохранение энергии'
+    """
+    return LAW_NAMES[law][language]
+
+
 def found(verdict: Verdict, model: BSDF, language: str, *, mutual: bool) -> tuple[str, str]:
     """Return the name of what a verdict found and the sentence on it.
 
     ``mutual`` says that f is reciprocal: then an integral over ``wi`` is also the share that is reflected.
     """
     if verdict.check == "values":
-        return _values(verdict, language)
+        return _values(verdict, model, language)
     if _is_unjudged(verdict):
-        return "not-finite", tell(language, "unjudged", law=LAW_NAMES[verdict.check][language])
+        return "unjudged", ""
     if verdict.check == "energy":
         return _energy(verdict, language, mutual)
     if verdict.outcome is not Outcome.VIOLATED:
         return "reciprocal", tell(language, "reciprocal", pairs=verdict.details["pairs"])
-    wi, wo, one, two = _tidied(verdict, model)
+    wi, wo = _tidied(verdict, model, _asymmetry)
+    one, two = _channel(*(channels(model.evaluate(*pair))[0] for pair in ((wi, wo), (wo, wi))))
     digits = next((n for n in (3, 5, 8) if f"{one:.{n}g}" != f"{two:.{n}g}"), 12)
-    place = _place(wi, wo, language)
+    place = place_of(wi[0], wo[0], language)
     values = {"one": f"{one:.{digits}g}", "two": f"{two:.{digits}g}", "place": place}
     return "not-reciprocal", tell(language, "not-reciprocal", **values)
 
@@ -156,7 +175,7 @@ def failed(error: CallableError, language: str) -> str:
         text += tell(language, "slow", pairs=ASKED)
     if error.fields.get("wi") is None:
         return text
-    return text + tell(language, "at", place=_place(error.fields["wi"], error.fields["wo"], language))
+    return text + tell(language, "at", place=place_of(error.fields["wi"], error.fields["wo"], language))
 
 
 def remarks(notes: tuple[str, ...], language: str) -> list[str]:
@@ -188,14 +207,15 @@ def _is_unjudged(verdict: Verdict) -> bool:
     return unsure and (verdict.estimate is None or verdict.message.startswith("not repeatable"))
 
 
-def _values(verdict: Verdict, language: str) -> tuple[str, str]:
+def _values(verdict: Verdict, model: BSDF, language: str) -> tuple[str, str]:
     if verdict.outcome is Outcome.HOLDS or verdict.witness is None:
         return "finite", tell(language, "finite")
     values = verdict.witness.values
     if "f" not in values:
         return "not-repeatable", say(language, "not-repeatable")
-    place = _place(verdict.witness.directions["wi"], verdict.witness.directions["wo"], language)
-    seen = np.atleast_1d(np.asarray(values["f"], dtype=float))
+    wi, wo = _tidied(verdict, model, _badness)
+    place = place_of(wi[0], wo[0], language)
+    seen = channels(model.evaluate(wi, wo))[0]
     if np.isfinite(seen).all():
         return "negative", tell(language, "negative", value=f"{seen.min():.3g}", place=place)
     bad = float(seen[~np.isfinite(seen)][0])
@@ -211,6 +231,8 @@ def _energy(verdict: Verdict, language: str, mutual: bool) -> tuple[str, str]:
     if not details["isotropic"] and details["theta_deg"] > 0:
         theta += f", φ = {_degrees(details['phi_deg'])}"
     share = share_of_light(value)
+    if verdict.outcome is Outcome.HOLDS and value - details["least"] < 1e-6 * value:
+        return "conserves", tell(language, "even", share=share)
     if verdict.outcome is Outcome.HOLDS:
         return "conserves", tell(language, "conserves", share=share, theta=theta)
     if verdict.outcome is Outcome.INCONCLUSIVE:
@@ -223,8 +245,10 @@ def _energy(verdict: Verdict, language: str, mutual: bool) -> tuple[str, str]:
     return "gains-energy", text
 
 
-def _tidied(verdict: Verdict, model: BSDF) -> tuple[FloatArray, FloatArray, float, float]:
-    """Return a witness of broken reciprocity at angles that are easily typed, if one is as telling."""
+def _tidied(
+    verdict: Verdict, model: BSDF, severity: Callable[[BSDF, FloatArray, FloatArray], FloatArray]
+) -> tuple[FloatArray, FloatArray]:
+    """Return a witness's pair as (1, 3) arrays, at angles that are easily typed if those tell as much."""
     assert verdict.witness is not None
     wi, wo = (np.asarray(verdict.witness.directions[name], dtype=float) for name in ("wi", "wo"))
     angles = np.array([_angles(wi), _angles(wo)])
@@ -233,13 +257,28 @@ def _tidied(verdict: Verdict, model: BSDF) -> tuple[FloatArray, FloatArray, floa
     near[:, :, 0] = np.minimum(near[:, :, 0], 90 - steps[:, None])
     w = polar(np.cos(np.radians(near[:, :, 0])), np.radians(near[:, :, 1]))
     first, second = np.vstack([w[:, 0], wi]), np.vstack([w[:, 1], wo])
-    one, two = channels(model.evaluate(first, second)), channels(model.evaluate(second, first))
+    worst = severity(model, first, second)
+    row = int(np.argmax(worst >= 0.5 * worst[-1]))
+    return first[row : row + 1], second[row : row + 1]
+
+
+def _asymmetry(model: BSDF, wi: FloatArray, wo: FloatArray) -> FloatArray:
+    one, two = channels(model.evaluate(wi, wo)), channels(model.evaluate(wo, wi))
     with np.errstate(all="ignore"):
         gap = np.abs(one - two) / np.maximum(np.maximum(np.abs(one), np.abs(two)), 1e-300)
-    worst = gap.max(axis=1)
-    row = int(np.argmax(worst >= 0.5 * worst[-1]))
-    k = int(np.argmax(gap[row]))
-    return first[row], second[row], float(one[row, k]), float(two[row, k])
+    worst: FloatArray = gap.max(axis=1)
+    return worst
+
+
+def _badness(model: BSDF, wi: FloatArray, wo: FloatArray) -> FloatArray:
+    values = channels(model.evaluate(wi, wo))
+    return np.where(np.isfinite(values), np.maximum(-values, 0.0), np.inf).max(axis=1)
+
+
+def _channel(one: FloatArray, two: FloatArray) -> tuple[float, float]:
+    """Return the values of the wavelength at which they differ most."""
+    k = int(np.argmax(np.abs(one - two)))
+    return float(one[k]), float(two[k])
 
 
 def _angles(w: Any) -> tuple[float, float]:
@@ -256,6 +295,7 @@ def _degrees(angle: float) -> str:
     return f"{rough if rough != '90' else f'{angle:.8g}'}°"
 
 
-def _place(wi: Any, wo: Any, language: str) -> str:
+def place_of(wi: Any, wo: Any, language: str) -> str:
+    """Return a pair of directions (3,) as angles."""
     pairs = {name: tuple(_degrees(angle) for angle in _angles(w)) for name, w in (("wi", wi), ("wo", wo))}
     return tell(language, "directions", **pairs)
