@@ -146,7 +146,7 @@ class Laws:
         names = [like.name, *(name for name, _ in wrong.values()), "not-the-model" if refused else ""]
         return Finding(
             share=0.0 if refused else kept / sum(self._weight(law) for law in self.laws),
-            text=". ".join(each for each in (said, like.text) if each),
+            text=(". " if like.text[:1].isupper() else "; ").join(each for each in (said, like.text) if each),
             diagnosis=next((name for name in names if name), ""),
             confidence=like.confidence if like.name else float(bool(wrong or refused)),
         )
@@ -180,7 +180,7 @@ class Laws:
             return name, text, True
         if self.expected.get(law, "holds") == "violated":
             if verdict.outcome is Outcome.VIOLATED:
-                return name, text, True
+                return name, tell(language, "as-it-should", text=text), True
             return f"{law}-holds", f"{text}, {tell(language, 'should-break')}", False
         if verdict.outcome is Outcome.INCONCLUSIVE and name == "unclear":
             assert verdict.estimate is not None

@@ -69,6 +69,7 @@ LAW_SENTENCES: Mapping[str, Words] = {
         "en": "and so cannot be judged for {laws}",
         "ru": "поэтому нельзя проверить: {laws}",
     },
+    "as-it-should": {"en": "{text}, as it should", "ru": "{text}, как и должна"},
     "should-break": {
         "en": "one is asked for that breaks this law",
         "ru": "а нужна ДФО, которая этот закон нарушает",
