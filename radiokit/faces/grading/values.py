@@ -195,7 +195,7 @@ class Values:
         if out_of_range(answer, right, given, good):
             return "out-of-range", {"bad": rows(~good), "count": len(right)}
         if answer.dtype == np.float32:
-            near = close(answer, right, SINGLE * size)
+            near = close(answer, right, np.maximum(SINGLE * size, self.atol))
             if out_of_range(answer, right, given, near, widest=1e15):
                 return "float32-range", {"bad": rows(~near), "count": len(right)}
         if not finite.all():
@@ -208,10 +208,10 @@ class Values:
         single = answer.dtype == np.float32 or bool(np.all(numbers == numbers.astype(np.float32)))
         eps = float(np.finfo(np.float32 if single else np.float64).eps)
         terms = 0.0 if self.terms is None else np.abs(self.terms(**given))
-        near = np.maximum((SINGLE if single else DOUBLE) * size, SLACK * eps * terms)
+        near = np.maximum(np.maximum((SINGLE if single else DOUBLE) * size, SLACK * eps * terms), self.atol)
         if not np.all(np.abs(numbers - right) <= near):
             return "", {}
-        error = np.max((np.abs(numbers - right) / size)[size > 0], initial=0.0)
+        error = np.max((np.abs(numbers - right) / size)[size > self.atol], initial=0.0)
         return "float32" if single else "imprecise", {"error": f"{error:.1g}", "rtol": self.rtol}
 
     def _diagnosed(
