@@ -15,7 +15,7 @@ from radiokit.faces.grading.finding import Callee, Finding
 from radiokit.faces.grading.lawtexts import failed, found, law_name, remarks, share_of_light, tell
 from radiokit.faces.grading.likeness import Likeness, compared
 from radiokit.faces.grading.remote import is_pairwise
-from radiokit.faces.grading.words import say
+from radiokit.faces.grading.words import say, sentence
 from radiokit.facts.errors import CallableError, ParameterError
 from radiokit.facts.report import Report
 from radiokit.facts.verdict import Outcome, Verdict
@@ -134,19 +134,19 @@ class Laws:
                 like = compared(models, meant, chosen, variants=self.variants, hints=hints, language=language)
                 refused = tell(language, "stranger") if like.stranger else ""
         except CallableError as error:
-            return Finding(share=0.0, text=failed(error, language))
+            return Finding(share=0.0, text=sentence(failed(error, language)))
         kept = sum(self._weight(law) for law in self.laws if law not in wrong)
         texts = [text for name, text in wrong.values() if name != "unjudged"]
         unjudged = [law_name(law, language) for law, (name, _) in wrong.items() if name == "unjudged"]
         texts += [tell(language, "unjudged", laws=", ".join(unjudged))] if unjudged else []
         texts += [refused] if refused else []
         if not texts and not like.text:
-            texts = [f"{say(language, 'full')}: {', '.join(right[law] for law in self.laws if law in right)}"]
-        said = "; ".join([*texts, *remarks(tuple(notes), language)])
+            texts = [f"{say(language, 'full')}: {'; '.join(right[law] for law in self.laws if law in right)}"]
+        texts += [like.text, *remarks(tuple(notes), language)]
         names = [like.name, *(name for name, _ in wrong.values()), "not-the-model" if refused else ""]
         return Finding(
             share=0.0 if refused else kept / sum(self._weight(law) for law in self.laws),
-            text=(". " if like.text[:1].isupper() else "; ").join(each for each in (said, like.text) if each),
+            text=" ".join(sentence(each) for each in texts if each),
             diagnosis=next((name for name in names if name), ""),
             confidence=like.confidence if like.name else float(bool(wrong or refused)),
         )

@@ -66,10 +66,10 @@ LAW_SENTENCES: Mapping[str, Words] = {
         "ru": "отражает {share} света под любым углом",
     },
     "unjudged": {
-        "en": "and so cannot be judged for {laws}",
-        "ru": "поэтому нельзя проверить: {laws}",
+        "en": "so it cannot be judged for {laws}",
+        "ru": "поэтому нельзя проверить {laws}",
     },
-    "as-it-should": {"en": "{text}, as it should", "ru": "{text}, как и должна"},
+    "as-it-should": {"en": "as it should, {text}", "ru": "как и должна, {text}"},
     "should-break": {
         "en": "one is asked for that breaks this law",
         "ru": "а нужна ДФО, которая этот закон нарушает",
@@ -233,9 +233,9 @@ def _energy(verdict: Verdict, language: str, mutual: bool) -> tuple[str, str]:
         theta += f", φ = {_degrees(details['phi_deg'])}"
     share = share_of_light(value)
     if verdict.outcome is Outcome.HOLDS and value - details["least"] < 1e-6 * value:
-        return "conserves", tell(language, "even", share=share)
+        return "conserves", tell(language, "even", share=share_of_light(min(value, 1.0)))
     if verdict.outcome is Outcome.HOLDS:
-        return "conserves", tell(language, "conserves", share=share, theta=theta)
+        return "conserves", tell(language, "conserves", share=share_of_light(min(value, 1.0)), theta=theta)
     if verdict.outcome is Outcome.INCONCLUSIVE:
         error = f"{100 * float(np.max(verdict.estimate.error)):.1g} %"
         return "unclear", tell(language, "unclear", share=share, error=error)

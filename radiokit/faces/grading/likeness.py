@@ -11,9 +11,10 @@ import numpy as np
 from radiokit.checks.probes import pairs
 from radiokit.contracts.bsdf import BSDF
 from radiokit.faces.diagnosis.diagnose import diagnose
+from radiokit.faces.grading.evidence import clause, hint_for
 from radiokit.faces.grading.lawtexts import place_of, tell
 from radiokit.faces.grading.protocol import Array
-from radiokit.faces.grading.values import SURE, hint_for
+from radiokit.faces.grading.values import SURE
 from radiokit.faces.grading.words import say
 
 __all__ = ["Likeness", "compared"]
@@ -94,7 +95,7 @@ def compared(
             return Likeness(name=first.name, confidence=round(first.confidence, 2), text=text)
     assert found is not None
     if found.suspicions:
-        likely = [hint_for(each, hints, language) for each in found.suspicions[:2]]
+        likely = [clause(hint_for(each, hints, language)) for each in found.suspicions[:2]]
         key, text = ("perhaps", likely[0]) if len(likely) == 1 else ("", " / ".join(likely))
         return Likeness(text=tell(language, key, name=text) if key else say(language, "one-of", names=text))
     factor = _factor(answer, right, rtol or 1e-6)

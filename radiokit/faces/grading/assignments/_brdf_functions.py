@@ -24,6 +24,7 @@ __all__ = [
     "lambert",
     "mirror_cosine",
     "mixed",
+    "mixed_values",
     "ordinary_pairs",
     "phong",
     "phong_original",
@@ -77,6 +78,7 @@ def hard_pairs(**parameters: Parameter) -> Callable[[np.random.Generator], Input
             (down, _upper(rng, 8, 80.0)),
             (_upper(rng, 8, 80.0), down),
             (down, reflect(down)),
+            (up, -up),
             (flat, up),
             (up, flat),
         ]
@@ -137,6 +139,12 @@ def mixed(diffuse: float, specular: float, exponent: float) -> BSDF:
     """Return the mixture, scaled down where the two shares exceed the whole."""
     whole = max(1.0, diffuse + specular)
     return diffuse / whole * Lambert() + specular / whole * Phong(exponent=exponent)
+
+
+def mixed_values(wi: Array, wo: Array, diffuse: Array, specular: Array, exponent: Array) -> Array:
+    """Return the values of ``mixed`` for arrays of parameters."""
+    lobe = by_row(phong)(wi, wo, exponent=exponent)
+    return (diffuse * Lambert().evaluate(wi, wo) + specular * lobe) / np.maximum(1.0, diffuse + specular)
 
 
 def mirror_cosine(wi: Array, wo: Array) -> Array:

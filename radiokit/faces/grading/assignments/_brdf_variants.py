@@ -12,13 +12,17 @@ from radiokit.faces.grading.words import Words
 
 __all__ = [
     "ASYMMETRY",
+    "BLINN_HINTS",
     "BLINN_PHONG",
     "HALF_COSINE",
     "HINTS",
     "LAMBERT",
     "MIRROR_COSINE",
+    "MIRROR_HINTS",
     "MIXED",
+    "ORIGINAL_HINTS",
     "PHONG",
+    "PHONG_HINTS",
     "PHONG_ORIGINAL",
 ]
 
@@ -50,12 +54,12 @@ def _clamped(c: Array) -> Array:
     return np.maximum(c, 0.0)
 
 
-def _brdf(lobe: Lobe, cosine: Cosine, clamp: Callable[[Array], Array] = _clamped) -> Function:
+def _brdf(lobe: Lobe, cosine: Cosine) -> Function:
     """Return f(wi, wo, **parameters), 0 below the horizon."""
 
     def f(wi: Array, wo: Array, **parameters: Array) -> Array:
         with np.errstate(all="ignore"):
-            found = lobe(clamp(cosine(wi, wo)), wi, wo, **parameters)
+            found = lobe(_clamped(cosine(wi, wo)), wi, wo, **parameters)
         return np.where((wi[..., 2] > 0) & (wo[..., 2] > 0), found, 0.0)
 
     return f
@@ -67,8 +71,6 @@ def _about_mirror(lobe: Lobe) -> dict[str, Function]:
         "mirror-forgotten": _brdf(lobe, _dot((1, 1, 1))),
         "mirror-of-x-alone": _brdf(lobe, _dot((-1, 1, 1))),
         "mirror-of-y-alone": _brdf(lobe, _dot((1, -1, 1))),
-        "absolute-for-clamp": _brdf(lobe, _dot((-1, -1, 1)), np.abs),
-        "cosine-not-clamped": _brdf(lobe, _dot((-1, -1, 1)), np.positive),
         "half-for-mirror": _brdf(lobe, _of_half("normal")),
         **_powers(lobe, mirror_cosine),
     }
@@ -125,6 +127,10 @@ def _whole(kd: Array, ks: Array) -> Array:
     return np.maximum(1.0, kd + ks)
 
 
+def _angle(c: Array) -> Array:
+    return np.arccos(np.clip(c, -1, 1))
+
+
 def _ratio(top: Array, bottom: Array) -> Array:
     return np.where(bottom > 0, top / np.where(bottom > 0, bottom, 1.0), 0.0)
 
@@ -133,7 +139,6 @@ LAMBERT: Mapping[str, Function] = {
     "reflectance-forgotten": _brdf(
         lambda c, wi, wo, *, reflectance: 1 / np.pi + 0 * reflectance, mirror_cosine
     ),
-    "divided-by-two-pi": _brdf(lambda c, wi, wo, *, reflectance: reflectance / (2 * np.pi), mirror_cosine),
 }
 
 MIRROR_COSINE: Mapping[str, Function] = {
@@ -141,15 +146,13 @@ MIRROR_COSINE: Mapping[str, Function] = {
     "mirror-forgotten": lambda wi, wo: _clamped(_dot((1, 1, 1))(wi, wo)),
     "mirror-of-x-alone": lambda wi, wo: _clamped(_dot((-1, 1, 1))(wi, wo)),
     "mirror-of-y-alone": lambda wi, wo: _clamped(_dot((1, -1, 1))(wi, wo)),
-    "absolute-for-clamp": lambda wi, wo: np.abs(_dot((-1, -1, 1))(wi, wo)),
-    "cosine-not-clamped": _dot((-1, -1, 1)),
     "half-for-mirror": lambda wi, wo: _clamped(_of_half("normal")(wi, wo)),
-    "angle-for-cosine": lambda wi, wo: np.arccos(np.clip(_dot((-1, -1, 1))(wi, wo), -1, 1)),
+    "angle-for-cosine": lambda wi, wo: _angle(_dot((-1, -1, 1))(wi, wo)),
+    "angle-in-degrees": lambda wi, wo: np.degrees(_angle(_dot((-1, -1, 1))(wi, wo))),
 }
 
 PHONG_ORIGINAL: Mapping[str, Function] = {
     **_about_mirror(_original),
-    "not-divided": _times(_original, lambda i, o: i),
     "divided-by-viewer-cosine": _times(_original, lambda i, o: i / o),
     "divided-by-both-cosines": _times(_original, lambda i, o: 1 / o),
     "coefficient-forgotten": _brdf(
@@ -159,13 +162,13 @@ PHONG_ORIGINAL: Mapping[str, Function] = {
 
 PHONG: Mapping[str, Function] = {
     **_about_mirror(_phong),
-    "divided-by-cosine": _times(_phong, lambda i, o: 1 / i),
 }
 
 HALF_COSINE: Mapping[str, Function] = {
     "mirror-for-half": _brdf(lambda c, wi, wo: c, _dot((-1, -1, 1))),
     "half-from-viewer": _brdf(lambda c, wi, wo: c, _of_half("viewer")),
-    "angle-for-cosine": _brdf(lambda c, wi, wo: np.arccos(np.clip(c, -1, 1)), _of_half("normal")),
+    "angle-for-cosine": _brdf(lambda c, wi, wo: _angle(c), _of_half("normal")),
+    "angle-in-degrees": _brdf(lambda c, wi, wo: np.degrees(_angle(c)), _of_half("normal")),
 }
 
 BLINN_PHONG: Mapping[str, Function] = {
@@ -213,14 +216,6 @@ HINTS: Mapping[str, Words] = {
         "en": "You changed the sign of y alone: about the normal z, both x and y change theirs.",
         "ru": "Вы сменили знак только у y: при отражении относительно нормали z знак меняют и x, и y.",
     },
-    "absolute-for-clamp": {
-        "en": "You took |cos α|, which makes a second lobe behind: where cos α < 0, take 0.",
-        "ru": "Вы взяли |cos α|, и сзади появился второй лепесток: там, где cos α < 0, берите 0.",
-    },
-    "cosine-not-clamped": {
-        "en": "You did not clamp cos α, and an even power makes a second lobe of it: max(0, cos α).",
-        "ru": "Вы не ограничили cos α снизу, и чётная степень даёт второй лепесток: нужно max(0, cos α).",
-    },
     "half-for-mirror": {
         "en": "You took the half vector, as Blinn does: Phong's angle α is that from the mirror direction.",
         "ru": "Вы взяли полувектор, как Блинн: у Фонга угол α отсчитывают от зеркального направления.",
@@ -245,7 +240,7 @@ HINTS: Mapping[str, Words] = {
         "en": "Your value is that of a white surface: multiply by the reflectance ρ.",
         "ru": "Это значение для белой поверхности: умножьте на коэффициент отражения ρ.",
     },
-    "divided-by-two-pi": {
+    "halved": {
         "en": "You divided by 2π, the hemisphere's solid angle: the integral of cos θ over it is π.",
         "ru": "Вы разделили на 2π, телесный угол полусферы, а интеграл cos θ по полусфере равен π.",
     },
@@ -253,11 +248,9 @@ HINTS: Mapping[str, Words] = {
         "en": "You gave the angle itself, and its cosine is asked for.",
         "ru": "Вы вернули сам угол, а нужен его косинус.",
     },
-    "not-divided": {
-        "en": "You forgot to divide by cos θi: Phong gave the light that is seen, and a BRDF is that over "
-        "the irradiance.",
-        "ru": "Вы забыли разделить на cos θi: у Фонга это видимый свет, а ДФО — его отношение к "
-        "освещённости.",
+    "angle-in-degrees": {
+        "en": "You gave the angle itself, in degrees, and its cosine is asked for.",
+        "ru": "Вы вернули сам угол, да ещё в градусах, а нужен его косинус.",
     },
     "divided-by-viewer-cosine": {
         "en": "You divided by the viewer's cosine: it is the light's, cos θi, that the irradiance holds.",
@@ -266,12 +259,6 @@ HINTS: Mapping[str, Words] = {
     "divided-by-both-cosines": {
         "en": "You divided by both cosines: only cos θi stands below.",
         "ru": "Вы разделили на оба косинуса: в знаменателе только cos θi.",
-    },
-    "divided-by-cosine": {
-        "en": "You divided by cos θi, as in the model of 1975: the modified lobe has no cosine below, and "
-        "so it is reciprocal.",
-        "ru": "Вы разделили на cos θi, как в модели 1975 года: у модифицированного лепестка косинуса в "
-        "знаменателе нет, поэтому он и обратим.",
     },
     "coefficient-forgotten": {
         "en": "You forgot the coefficient k_s.",
@@ -340,3 +327,57 @@ HINTS: Mapping[str, Words] = {
     },
 }
 """What is said of a misconception in this assignment, before what the catalogue says."""
+
+BLINN_HINTS: Mapping[str, Words] = {
+    **HINTS,
+    "lobe-normalisation": {
+        "en": "Your lobe has another constant than is asked, such as Phong's (n + 2)/(2π) or the "
+        "(n + 8)/(8π) of books: integrate cosⁿδ cos θ over the hemisphere, where δ = θ/2, and divide by that.",
+        "ru": "У вашего лепестка не та константа — например, (n + 2)/(2π) Фонга или (n + 8)/(8π) из книг: "
+        "проинтегрируйте cosⁿδ cos θ по полусфере, где δ = θ/2, и разделите на результат.",
+    },
+}
+
+MIRROR_HINTS: Mapping[str, Words] = {
+    **HINTS,
+    "horizon-not-clamped": {
+        "en": "Where cos α is negative the answer is 0, and yours is not: take max(0, cos α), not |cos α|.",
+        "ru": "Там, где cos α отрицателен, ответ равен 0, а у вас нет: нужно max(0, cos α), а не |cos α|.",
+    },
+}
+
+PHONG_HINTS: Mapping[str, Words] = {
+    **HINTS,
+    "lobe-normalisation": {
+        "en": "Your lobe has another constant than is asked: at normal incidence integrate cosⁿθ cos θ over "
+        "the hemisphere, and divide by that.",
+        "ru": "У вашего лепестка не та константа: проинтегрируйте cosⁿθ cos θ по полусфере при падении по "
+        "нормали и разделите на результат.",
+    },
+    "horizon-not-clamped": {
+        "en": "Your value is not 0 where it should be: below the horizon, and where cos α < 0. There an even "
+        "power or |cos α| makes a second lobe.",
+        "ru": "У вас не 0 там, где он должен быть: под горизонтом и при cos α < 0, где чётная степень или "
+        "|cos α| даёт второй лепесток.",
+    },
+    "cosine-forgotten": {
+        "en": "You divided by cos θi, as in the model of 1975: the modified lobe has no cosine below, and so "
+        "it is reciprocal.",
+        "ru": "Вы разделили на cos θi, как в модели 1975 года: у модифицированного лепестка косинуса в "
+        "знаменателе нет, поэтому он и обратим.",
+    },
+}
+
+ORIGINAL_HINTS: Mapping[str, Words] = {
+    **PHONG_HINTS,
+    "cosine-twice": {
+        "en": "You forgot to divide by cos θi: Phong gave the light that is seen, and a BRDF is that over "
+        "the irradiance.",
+        "ru": "Вы забыли разделить на cos θi: у Фонга это видимый свет, а ДФО — его отношение к "
+        "освещённости.",
+    },
+    "cosine-forgotten": {
+        "en": "You divided by cos θi twice.",
+        "ru": "Вы дважды разделили на cos θi.",
+    },
+}

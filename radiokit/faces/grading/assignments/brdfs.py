@@ -30,8 +30,8 @@ LAWS: Words = {"en": "the laws of a BRDF", "ru": "законы ДФО"}
 LOOSE = {1e-6: 0.8, 1e-3: 0.5}
 """What a value of fewer digits still earns, as float32 gives."""
 
-FAINT = 1e-30
-"""Values [sr⁻¹] below which a lobe's tail need not be right."""
+FAINT = 1e-9
+"""Below which value [sr⁻¹] a lobe's tail need not be right."""
 
 
 def _exponents(most: int) -> Draw:
@@ -136,7 +136,7 @@ ASSIGNMENT = Assignment(
                 "— единичные векторы формы `(3,)` или `(N, 3)`.",
             },
             parts=_parts(brdf.mirror_cosine, wrong.MIRROR_COSINE),
-            hints=wrong.HINTS,
+            hints=wrong.MIRROR_HINTS,
         ),
         Question(
             signature="phong_original(wi, wo, exponent, coefficient)",
@@ -163,10 +163,10 @@ ASSIGNMENT = Assignment(
                     reference=brdf.phong_original,
                     variants=wrong.PHONG_ORIGINAL,
                 ),
-                exponent=_exponents(200),
+                exponent=_exponents(100),
                 coefficient=_shares,
             ),
-            hints=wrong.HINTS,
+            hints=wrong.ORIGINAL_HINTS,
             seconds=SECONDS,
         ),
         Question(
@@ -190,9 +190,9 @@ ASSIGNMENT = Assignment(
                     variants=wrong.PHONG,
                     least=0.5,
                 ),
-                exponent=_exponents(200),
+                exponent=_exponents(100),
             ),
-            hints=wrong.HINTS,
+            hints=wrong.PHONG_HINTS,
             seconds=SECONDS,
         ),
         Question(
@@ -237,9 +237,9 @@ ASSIGNMENT = Assignment(
                     variants=wrong.BLINN_PHONG,
                     least=0.5,
                 ),
-                exponent=_exponents(200),
+                exponent=_exponents(100),
             ),
-            hints=wrong.HINTS,
+            hints=wrong.BLINN_HINTS,
             seconds=SECONDS,
         ),
         Question(
@@ -281,7 +281,7 @@ ASSIGNMENT = Assignment(
                 "сумму, чтобы энергия сохранялась.",
             ),
             parts=_parts(
-                brdf.by_row(brdf.mixed),
+                brdf.mixed_values,
                 wrong.MIXED,
                 Laws(
                     parameters=({"diffuse": 0.9, "specular": 0.6, "exponent": 20.0},),
@@ -291,9 +291,9 @@ ASSIGNMENT = Assignment(
                 ),
                 diffuse=_shares,
                 specular=_shares,
-                exponent=_exponents(200),
+                exponent=_exponents(100),
             ),
-            hints=wrong.HINTS,
+            hints=wrong.PHONG_HINTS,
             seconds=SECONDS,
         ),
     ),
