@@ -136,7 +136,7 @@ def sentence(text: str) -> str:
     """
     text = text.strip().rstrip(".;")
     first = text[:1] if text[:1] in "πθωλφρ" else text[:1].upper()
-    return f"{first}{text[1:]}." if text else ""
+    return f"{first}{text[1:]}{'' if text.endswith(('?', '!')) else '.'}" if text else ""
 
 
 def _noun(language: str, count: int) -> str:
