@@ -112,6 +112,16 @@ class Laws:
         shown: bool,
     ) -> Finding:
         """Judge a function; ``shown`` changes nothing, for no right values are told."""
+        with np.errstate(all="ignore"):  # values may be infinite
+            return self._judged(callee, rng, language, hints)
+
+    def _judged(
+        self,
+        callee: Callee,
+        rng: np.random.Generator,
+        language: str,
+        hints: Mapping[str, Mapping[str, str]],
+    ) -> Finding:
         chosen = list(self.parameters(rng) if callable(self.parameters) else self.parameters)
         wrong: dict[str, tuple[str, str]] = {}  # by law: what was found, and the sentence
         right: dict[str, str] = {}
@@ -134,7 +144,7 @@ class Laws:
                 like = compared(models, meant, chosen, variants=self.variants, hints=hints, language=language)
                 refused = tell(language, "stranger") if like.stranger else ""
         except CallableError as error:
-            return Finding(share=0.0, text=sentence(failed(error, language)))
+            return Finding(share=0.0, text=failed(error, language))
         kept = sum(self._weight(law) for law in self.laws if law not in wrong)
         texts = [text for name, text in wrong.values() if name != "unjudged"]
         unjudged = [law_name(law, language) for law, (name, _) in wrong.items() if name == "unjudged"]

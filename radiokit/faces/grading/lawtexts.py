@@ -51,6 +51,10 @@ LAW_SENTENCES: Mapping[str, Words] = {
         "en": "gains energy: at θ = {theta} it reflects {share} of the light",
         "ru": "нарушает сохранение энергии: при θ = {theta} отражает {share} света",
     },
+    "gains-everywhere": {
+        "en": "gains energy: reflects {share} of the light at every angle",
+        "ru": "нарушает сохранение энергии: отражает {share} света под любым углом",
+    },
     "gains-for-viewer": {
         "en": "gains energy: for a viewer at θ = {theta}, ∫ f cos θi dωi = {value}, and at most 1 is right",
         "ru": "нарушает сохранение энергии: для наблюдателя под углом θ = {theta} интеграл "
@@ -232,13 +236,16 @@ def _energy(verdict: Verdict, language: str, mutual: bool) -> tuple[str, str]:
     if not details["isotropic"] and details["theta_deg"] > 0:
         theta += f", φ = {_degrees(details['phi_deg'])}"
     share = share_of_light(value)
-    if verdict.outcome is Outcome.HOLDS and value - details["least"] < 1e-6 * value:
+    even = value - details["least"] < 1e-6 * value
+    if verdict.outcome is Outcome.HOLDS and even:
         return "conserves", tell(language, "even", share=share_of_light(min(value, 1.0)))
     if verdict.outcome is Outcome.HOLDS:
         return "conserves", tell(language, "conserves", share=share_of_light(min(value, 1.0)), theta=theta)
     if verdict.outcome is Outcome.INCONCLUSIVE:
         error = f"{100 * float(np.max(verdict.estimate.error)):.1g} %"
-        return "unclear", tell(language, "unclear", share=share, error=error)
+        return "unclear", tell(language, "unclear", share=f"{100 * value:.4g} %", error=error)
+    if even:
+        return "gains-energy", tell(language, "gains-everywhere", share=share)
     key = "gains" if mutual or details["fixed"] == "wi" else "gains-for-viewer"
     text = tell(language, key, share=share, theta=theta, value=f"{value:.6g}")
     if details["approached_at_grazing"]:

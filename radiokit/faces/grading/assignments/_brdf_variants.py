@@ -331,8 +331,8 @@ HINTS: Mapping[str, Words] = {
 BLINN_HINTS: Mapping[str, Words] = {
     **HINTS,
     "lobe-normalisation": {
-        "en": "Your lobe has another constant than is asked, such as Phong's (n + 2)/(2π) or the "
-        "(n + 8)/(8π) of books: integrate cosⁿδ cos θ over the hemisphere, where δ = θ/2, and divide by that.",
+        "en": "Your lobe has another constant than is asked, such as Phong's (n + 2)/(2π) or the (n + "
+        "8)/(8π) of books: integrate cosⁿδ cos θ over the hemisphere, where δ = θ/2, and divide by that.",
         "ru": "У вашего лепестка не та константа — например, (n + 2)/(2π) Фонга или (n + 8)/(8π) из книг: "
         "проинтегрируйте cosⁿδ cos θ по полусфере, где δ = θ/2, и разделите на результат.",
     },
@@ -349,20 +349,20 @@ MIRROR_HINTS: Mapping[str, Words] = {
 PHONG_HINTS: Mapping[str, Words] = {
     **HINTS,
     "lobe-normalisation": {
-        "en": "Your lobe has another constant than is asked: at normal incidence integrate cosⁿθ cos θ over "
-        "the hemisphere, and divide by that.",
+        "en": "Your lobe has another constant than is asked: at normal incidence integrate cosⁿθ cos θ "
+        "over the hemisphere, and divide by that.",
         "ru": "У вашего лепестка не та константа: проинтегрируйте cosⁿθ cos θ по полусфере при падении по "
         "нормали и разделите на результат.",
     },
     "horizon-not-clamped": {
-        "en": "Your value is not 0 where it should be: below the horizon, and where cos α < 0. There an even "
-        "power or |cos α| makes a second lobe.",
+        "en": "Your value is not 0 where it should be: below the horizon, and where cos α < 0. There an "
+        "even power or |cos α| makes a second lobe.",
         "ru": "У вас не 0 там, где он должен быть: под горизонтом и при cos α < 0, где чётная степень или "
         "|cos α| даёт второй лепесток.",
     },
     "cosine-forgotten": {
-        "en": "You divided by cos θi, as in the model of 1975: the modified lobe has no cosine below, and so "
-        "it is reciprocal.",
+        "en": "You divided by cos θi, as in the model of 1975: the modified lobe has no cosine below, and "
+        "so it is reciprocal.",
         "ru": "Вы разделили на cos θi, как в модели 1975 года: у модифицированного лепестка косинуса в "
         "знаменателе нет, поэтому он и обратим.",
     },
