@@ -16,8 +16,17 @@ LONGEST = 300
 """How many characters a text for a student should have at most."""
 TELLING = ("offset",)
 """Misconceptions whose detail would give a right value away."""
-PLAIN = ("horizon-not-clamped",)
-"""Misconceptions whose detail says no more than the evidence."""
+PLAIN = (
+    "horizon-not-clamped",
+    "degrees-for-radians",
+    "square-root",
+    "squared",
+    "reciprocal",
+    "one-minus",
+    "truncated-to-integer",
+    "rounded",
+)
+"""Misconceptions whose detail says no more than their words and the evidence."""
 
 
 def rows(bad: Array) -> int:

@@ -30,6 +30,8 @@ SLACK = 64
 """How many roundings of its terms a careless formula may be off."""
 SINGLE, DOUBLE = 2e-5, 1e-6
 """The relative deviation of a right formula with its digits lost, of numbers in float32 and others."""
+NAMES = {"float32": "single-precision", "float32-range": "single-precision", "constant": "constant-answer"}
+"""Diagnoses by sentences, where they differ."""
 FEWEST = 5
 """How many answers a diagnosis of some of them takes."""
 
@@ -161,7 +163,7 @@ class Values:
         )
         key, values = self._known(answer, right, given, good)
         if key:
-            name = "single-precision" if key.startswith("float32") else key
+            name = NAMES.get(key, key)
             text = joined(say(language, key, **values), hints.get(name, {}).get(language, ""))
             return Finding(share=share, text=text, diagnosis=name, confidence=1.0)
         full, count = wrong_at(answer, right, given, good, language, shown=shown)
@@ -170,6 +172,8 @@ class Values:
             notes = "; ".join(found.notes) if found is not None and shown else ""
             return Finding(share=share, text=joined(full, notes))
         first = found.first
+        if first.name == "wrong-at-few":  # the evidence says more
+            return Finding(share=share, text=joined(full), diagnosis=first.name)
         if first.confidence < SURE or found.ambiguous:
             likely = [clause(hint_for(each, hints, language, shown=shown)) for each in found.suspicions[:2]]
             text = say(language, "one-of", names=" / ".join(likely))
@@ -204,7 +208,7 @@ class Values:
             return "not-finite", {"value": value, "bad": rows(~finite), "count": len(finite)}
         numbers = answer.astype(float)
         if len(right) > 1 and not np.ptp(numbers):
-            return "", {}
+            return ("constant", {"value": f"{numbers.flat[0]:.6g}"}) if np.ptp(right) else ("", {})
         single = answer.dtype == np.float32 or bool(np.all(numbers == numbers.astype(np.float32)))
         eps = float(np.finfo(np.float32 if single else np.float64).eps)
         terms = 0.0 if self.terms is None else np.abs(self.terms(**given))
@@ -224,7 +228,7 @@ class Values:
             name: value for name, value in {**given, **context}.items() if _is_column(name, value, size)
         }
         others = {name: np.asarray(variant(**given), dtype=float) for name, variant in self.variants.items()}
-        usual = (*CATALOGUE, _swapped(self.reference, given, right))
+        usual = (*CATALOGUE, *_arguments(self.reference, given, right))
 
         def reference(**inputs: Any) -> Any:
             return self.reference(**{name: inputs.get(name, given[name]) for name in given})
@@ -247,27 +251,37 @@ class Values:
             inputs=some,
             variants={name: values[lit] for name, values in others.items()},
             language=language,
-            catalogue=(*CATALOGUE, _swapped(self.reference, lit_given, right[lit])),
+            catalogue=(*CATALOGUE, *_arguments(self.reference, lit_given, right[lit])),
         )
         return partly if partly.suspicions else found
 
 
-def _swapped(reference: Callable[..., Any], given: Mapping[str, Array], right: Array) -> Misconception:
-    """Return the misconception that two arguments stand in each other's place."""
+def _arguments(
+    reference: Callable[..., Any], given: Mapping[str, Array], right: Array
+) -> tuple[Misconception, Misconception]:
+    """Return the misconceptions that two arguments are exchanged, and that one is not used."""
 
-    def explain(problem: Problem) -> Iterable[Guess]:
-        for a, b in combinations(given, 2):
-            if given[a].shape == given[b].shape:
+    def explained(changes: Iterable[tuple[str, dict[str, Array]]]) -> Callable[[Problem], Iterable[Guess]]:
+        def explain(problem: Problem) -> Iterable[Guess]:
+            for detail, changed in changes:
                 try:
-                    values = reference(**{**given, a: given[b], b: given[a]})
+                    values = np.asarray(reference(**{**given, **changed}), dtype=float)
                 except (RadiokitError, ArithmeticError, ValueError):
                     continue
-                values = np.asarray(values, dtype=float)
                 if values.shape == right.shape:
-                    yield Guess(values[problem.index], detail=f"{a} ↔ {b}")
+                    yield Guess(values[problem.index], detail=detail)
 
-    english, russian = (say(language, "swapped") for language in LANGUAGES)
-    return structural("arguments-swapped", explain, english, russian, prior=0.5)
+        return explain
+
+    alike = [(a, b) for a, b in combinations(given, 2) if given[a].shape == given[b].shape]
+    swaps = [(f"{a} ↔ {b}", {a: given[b], b: given[a]}) for a, b in alike]
+    ones = [(name, {name: np.ones_like(value)}) for name, value in given.items() if value.ndim == 1]
+    swapped = [say(language, "swapped") for language in LANGUAGES]
+    ignored = [say(language, "ignored") for language in LANGUAGES]
+    return (
+        structural("arguments-swapped", explained(swaps), swapped[0], swapped[1], prior=0.5),
+        structural("argument-ignored", explained(ones), ignored[0], ignored[1], prior=0.05),
+    )
 
 
 def _is_column(name: str, value: Any, size: int) -> bool:

@@ -24,16 +24,14 @@ SENTENCES: Mapping[str, Words] = {
         "ru": "неверно для {bad} из {count} {noun}",
     },
     "imprecise": {
-        "en": "the formula is right, but digits are lost: the relative error reaches {error}, "
-        "and {rtol:g} is allowed",
-        "ru": "формула верна, но теряются значащие цифры: относительная ошибка достигает {error}, "
-        "а допускается {rtol:g}",
+        "en": "digits are lost: the relative error reaches {error}, and {rtol:g} is allowed",
+        "ru": "теряются значащие цифры: относительная ошибка достигает {error}, а допускается {rtol:g}",
     },
     "float32": {
-        "en": "the formula is right, but it is computed in float32: the relative error reaches {error}, "
-        "and {rtol:g} is allowed; use float64",
-        "ru": "формула верна, но вычислена в float32: относительная ошибка достигает {error}, "
-        "а допускается {rtol:g}; используйте float64",
+        "en": "this is computed in float32: the relative error reaches {error}, and {rtol:g} is allowed; "
+        "use float64",
+        "ru": "вычислено в float32: относительная ошибка достигает {error}, а допускается {rtol:g}; "
+        "используйте float64",
     },
     "float32-range": {
         "en": "the formula is right, but numbers leave the range of float32 at {bad} of {count} {noun}: "
@@ -47,6 +45,10 @@ SENTENCES: Mapping[str, Words] = {
         "ru": "формула верна, но промежуточное число слишком велико или слишком мало для float64 "
         "({bad} из {count} {noun}): измените порядок действий",
     },
+    "constant": {
+        "en": "the answer is {value} for all inputs: it does not depend on them",
+        "ru": "ответ равен {value} для всех входных данных: он от них не зависит",
+    },
     "not-finite": {
         "en": "gives {value} at {bad} of {count} {noun}",
         "ru": "даёт {value} для {bad} из {count} {noun}",
@@ -54,6 +56,10 @@ SENTENCES: Mapping[str, Words] = {
     "swapped": {
         "en": "your function takes its arguments in another order: see the signature",
         "ru": "аргументы вашей функции стоят в другом порядке: сверьтесь с условием",
+    },
+    "ignored": {
+        "en": "your answer does not depend on one of its arguments",
+        "ru": "ваш ответ не зависит от одного из аргументов",
     },
     "shape": {
         "en": "returns an array of shape {shape} where {expected} is right",
@@ -130,14 +136,14 @@ def say(language: str, key: str, **values: Any) -> str:
 
 
 def sentence(text: str) -> str:
-    """Return a text as one sentence: a capital first, one full stop last.
+    """Return a text as one sentence: a capital first, unless it is a symbol, and one full stop last.
 
-    >>> sentence("wrong at 1 of 2 inputs"), sentence("π is lost.")
-    ('Wrong at 1 of 2 inputs.', 'π is lost.')
+    >>> sentence("wrong at 1 of 2 inputs"), sentence("π is lost."), sentence("why?")
+    ('Wrong at 1 of 2 inputs.', 'π is lost.', 'Why?')
     """
     text = text.strip().rstrip(".;")
-    first = text[:1] if text[:1] in "πθωλφρ" else text[:1].upper()
-    return f"{first}{text[1:]}{'' if text.endswith(('?', '!')) else '.'}" if text else ""
+    first = text[:1] if "Α" <= text[:1] <= "ω" else text[:1].upper()
+    return f"{first}{text[1:]}{'' if text.endswith('?') else '.'}" if text else ""
 
 
 def _noun(language: str, count: int) -> str:

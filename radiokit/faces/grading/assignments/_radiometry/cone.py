@@ -79,8 +79,8 @@ $10^{-9}$.
             "ru": "π sin²α — это проекция телесного угла: под этим интегралом косинуса нет",
         },
         "full-angle": {
-            "en": "α is the half angle already, from the axis to the edge: do not halve it again",
-            "ru": "α отсчитан от оси до образующей: ещё раз делить его пополам не нужно",
+            "en": "The angle is the half angle already, from the axis to the edge: do not halve it again",
+            "ru": "Угол уже отсчитан от оси до образующей: ещё раз делить его пополам не нужно",
         },
         "imprecise": {
             "en": "1 − cos α subtracts nearly equal numbers: express it by the sine of α/2",

@@ -57,7 +57,6 @@ too.
     hard=far_and_near,
     variants={
         "volume-for-area": lambda flux, distance: flux / (4 / 3 * math.pi * distance**3),
-        "intensity-for-irradiance": lambda flux, distance: flux / (4 * math.pi) + 0 * distance,
     },
     credit={"four-pi-too-many": 0.25, "doubled": 0.25, "four-too-many": 0.25},
     hints={

@@ -85,6 +85,10 @@ $$E = \frac{I \cos\theta}{d^2}, \qquad E = 0, \text{ если источник �
     variants={},
     credit={"horizon-not-clamped": 0.5},
     hints={
+        "cosine-twice": {
+            "en": "The cosine enters once: the area that a beam falls on is 1/cos θ as large",
+            "ru": "Косинус входит один раз: пучок ложится на площадь в 1/cos θ раз большую",
+        },
         "horizon-not-clamped": CLAMP,
         "imprecise": {
             "en": "90° in radians is rounded: cos θ = sin(90° − θ), and degrees subtract without error",

@@ -114,6 +114,10 @@ $10^{-200}$ до $10^{200}$: их квадраты не умещаются во 
     },
     credit={"horizon-not-clamped": 0.5, "arguments-swapped": 0.25, "normal-not-normalised": 0.5},
     hints={
+        "cosine-twice": {
+            "en": "The cosine enters once: the area that a beam falls on is 1/cos θ as large",
+            "ru": "Косинус входит один раз: пучок ложится на площадь в 1/cos θ раз большую",
+        },
         "horizon-not-clamped": CLAMP,
         "normal-not-normalised": {
             "en": "The normal may be of any length: divide it by its length first",

@@ -104,6 +104,10 @@ $$\Delta\omega = \frac{A \cos\theta'}{d^2} .$$
     },
     credit={"horizon-not-clamped": 0.5},
     hints={
+        "cosine-twice": {
+            "en": "The cosine enters once: the area that a beam falls on is 1/cos θ as large",
+            "ru": "Косинус входит один раз: пучок ложится на площадь в 1/cos θ раз большую",
+        },
         "horizon-not-clamped": {
             "en": "Each cosine is to be cut off at 0 by itself: the product of two negative ones is positive",
             "ru": "Обрежьте нулём каждый косинус отдельно: произведение двух отрицательных положительно",

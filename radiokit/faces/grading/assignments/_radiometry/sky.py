@@ -99,8 +99,8 @@ $1 - \cos^2\alpha$ теряет цифры; относительная ошиб�
             "ru": "У вас cos²α вместо sin²α: конус с нулевым углом ничего не даёт",
         },
         "cosine-of-the-edge": {
-            "en": "θ differs within the cone: LΩ cos α takes it at the edge, where an integral is needed",
-            "ru": "θ внутри конуса меняется: LΩ cos α берёт его на краю, а нужен интеграл",
+            "en": "The angle differs within the cone: LΩ cos α takes the edge for all of it",
+            "ru": "Угол внутри конуса меняется: LΩ cos α берёт его на краю, а нужен интеграл",
         },
         "small-angle": {
             "en": "πLα² holds for narrow cones only: it is sin²α",
