@@ -132,8 +132,12 @@ class Laws:
             for model, given in zip(models, chosen, strict=True):
                 report = self._report(model)
                 notes += report.notes
+                finite = True
                 for verdict in report:
                     name, text, good = self._weighed(verdict, report, model, language)
+                    finite = finite and name != "not-finite"
+                    if good and not finite:  # what was found elsewhere says nothing of there
+                        name, text, good = "unjudged", "", False
                     if not good:
                         text = _with(given if len(chosen) > 1 else {}, text, language)
                         wrong.setdefault(verdict.check, (name, text))
