@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from radiokit.faces.grading.assignment import Assignment
-from radiokit.faces.grading.assignments import _brdf_functions as brdf
-from radiokit.faces.grading.assignments import _brdf_variants as wrong
+from radiokit.faces.grading.assignments._brdfs import functions as brdf
+from radiokit.faces.grading.assignments._brdfs import variants as wrong
 from radiokit.faces.grading.laws import Laws
 from radiokit.faces.grading.question import Part, Question
 from radiokit.faces.grading.values import Values

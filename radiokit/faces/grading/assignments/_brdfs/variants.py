@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from radiokit.faces.grading.assignments._brdf_functions import half_cosine, mirror_cosine
+from radiokit.faces.grading.assignments._brdfs.functions import half_cosine, mirror_cosine
 from radiokit.faces.grading.words import Words
 
 __all__ = [
