@@ -83,18 +83,36 @@ ASSIGNMENT = Assignment(
     name="brdfs",
     title={"en": "Assignment 2: BRDFs and their laws", "ru": "Задание 2: ДФО и их законы"},
     intro={
-        "en": "A bidirectional reflectance distribution function says how much of the light from "
-        r"$\omega_i$ leaves towards $\omega_o$: $f_r = \mathrm{d}L_o / (L_i \cos\theta_i\, "
-        r"\mathrm{d}\omega_i)$. A physical one is reciprocal, $f_r(\omega_i, \omega_o) = f_r(\omega_o, "
-        r"\omega_i)$, and conserves energy, $\int f_r \cos\theta_o\, \mathrm{d}\omega_o \le 1$ for every "
-        r"$\omega_i$. You write the classical models, find which of the laws each one obeys, and mend the "
-        "one that does not. NumPy is all you need.",
-        "ru": "Двухнаправленная функция отражения (ДФО) показывает, какая часть света, пришедшего с "
-        r"направления $\omega_i$, уходит в направлении $\omega_o$: $f_r = \mathrm{d}L_o / (L_i "
-        r"\cos\theta_i\, \mathrm{d}\omega_i)$. Физически корректная ДФО обратима, $f_r(\omega_i, \omega_o) "
-        r"= f_r(\omega_o, \omega_i)$, и сохраняет энергию: $\int f_r \cos\theta_o\, \mathrm{d}\omega_o \le "
-        r"1$ для любого $\omega_i$. Вы напишете классические модели, выясните, какие законы выполняет "
-        "каждая из них, и исправите ту, которая их нарушает. Достаточно NumPy.",
+        "en": r"""
+A bidirectional reflectance distribution function (BRDF) says how much of the light from $\omega_i$ leaves
+towards $\omega_o$:
+
+$$f_r(\omega_i, \omega_o) = \frac{\mathrm{d}L_o}{L_i \cos\theta_i \, \mathrm{d}\omega_i}.$$
+
+A physical one is reciprocal, $f_r(\omega_i, \omega_o) = f_r(\omega_o, \omega_i)$, and conserves energy:
+$\int f_r \cos\theta_o \, \mathrm{d}\omega_o \le 1$ for every $\omega_i$. Write the classical models, find
+which of the laws each one obeys, and mend the one that does not. NumPy suffices; a function that takes one
+pair of directions at a time counts as well.
+
+You see how you fare with **ordinary inputs**. **Hard inputs** (grazing directions, the horizon, exact mirror
+pairs) are hidden, and so are the **laws**, by which BRDFs are judged over the whole hemisphere. A relative
+error of $10^{-9}$ is allowed, and of values [1/sr] below $10^{-9}$ any; what float32 computes earns half.
+""",
+        "ru": r"""
+Двунаправленная функция отражения (ДФО, BRDF) показывает, какая часть света, пришедшего с направления
+$\omega_i$, уходит в направлении $\omega_o$:
+
+$$f_r(\omega_i, \omega_o) = \frac{\mathrm{d}L_o}{L_i \cos\theta_i \, \mathrm{d}\omega_i}.$$
+
+Физически корректная ДФО обратима, $f_r(\omega_i, \omega_o) = f_r(\omega_o, \omega_i)$, и сохраняет энергию:
+$\int f_r \cos\theta_o \, \mathrm{d}\omega_o \le 1$ для любого $\omega_i$. Напишите классические модели,
+выясните, какие законы выполняет каждая из них, и исправьте ту, которая их нарушает. Достаточно NumPy;
+годится и функция, принимающая по одной паре направлений за раз.
+
+Результат на **обычных входах** вы видите сразу. **Трудные входы** (скользящие направления, горизонт, точные
+зеркальные пары) скрыты, как и проверка **законов** по всей полусфере. Допускается относительная ошибка
+$10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — любая; вычисления в float32 дают половину баллов.
+""",
     },
     questions=(
         Question(
@@ -109,16 +127,15 @@ ASSIGNMENT = Assignment(
             ),
             parts=_parts(
                 brdf.by_row(brdf.lambert),
-                wrong.LAMBERT,
+                {},
                 Laws(
                     parameters=({"reflectance": 1.0},),
                     reference=brdf.lambert,
-                    variants=wrong.LAMBERT,
                     least=0.5,
                 ),
                 reflectance=_shares,
             ),
-            hints=wrong.HINTS,
+            hints=wrong.LAMBERT_HINTS,
             seconds=SECONDS,
         ),
         Question(
@@ -217,16 +234,16 @@ ASSIGNMENT = Assignment(
             points=3,
             title={"en": "Blinn-Phong, normalised", "ru": "Нормированная модель Блинна-Фонга"},
             text=_text(
-                r"Blinn's lobe is $f = N(n) \cos^n\delta$, with $\delta$ the angle between half vector and "
-                r"normal. The constant met in books, $(n + 8)/(8\pi)$, gains 7.5 % of energy at $n = 10$. "
-                r"Find the one for which exactly all light is reflected at normal incidence; there $\delta "
-                r"= \theta/2$. (With $c = \cos\delta$: $\cos\theta = 2c^2 - 1$ and $\mathrm{d}\omega = "
-                r"8\pi\, c\, |\mathrm{d}c|$, where $c$ goes from $1/\sqrt 2$ to 1.)",
-                r"Лепесток Блинна — $f = N(n) \cos^n\delta$, где $\delta$ — угол между полувектором и "
-                r"нормалью. Константа из книг, $(n + 8)/(8\pi)$, при $n = 10$ даёт лишние 7.5 % энергии. "
-                r"Найдите ту, при которой свет, падающий по нормали, отражается ровно весь; тогда $\delta = "
-                r"\theta/2$. (При $c = \cos\delta$: $\cos\theta = 2c^2 - 1$ и $\mathrm{d}\omega = 8\pi\, "
-                r"c\, |\mathrm{d}c|$, где $c$ меняется от $1/\sqrt 2$ до 1.)",
+                r"Blinn's lobe is $f = N(n) \cos^n\delta$, with $n$ = `exponent` and $\delta$ the angle "
+                r"between half vector and normal. The constant met in books, $(n + 8)/(8\pi)$, gains 7.5 % "
+                "of energy at $n = 10$. Find the one for which exactly all light is reflected at normal "
+                r"incidence; there $\delta = \theta/2$. (With $c = \cos\delta$: $\cos\theta = 2c^2 - 1$ and "
+                r"$\mathrm{d}\omega = 8\pi\, c\, |\mathrm{d}c|$, where $c$ goes from $1/\sqrt 2$ to 1.)",
+                r"Лепесток Блинна — $f = N(n) \cos^n\delta$, где $n$ = `exponent`, а $\delta$ — угол между "
+                r"полувектором и нормалью. Константа из книг, $(n + 8)/(8\pi)$, при $n = 10$ даёт лишние "
+                "7.5 % энергии. Найдите ту, при которой свет, падающий по нормали, отражается ровно весь; "
+                r"тогда $\delta = \theta/2$. (При $c = \cos\delta$: $\cos\theta = 2c^2 - 1$ и "
+                r"$\mathrm{d}\omega = 8\pi\, c\, |\mathrm{d}c|$, где $c$ меняется от $1/\sqrt 2$ до 1.)",
             ),
             parts=_parts(
                 brdf.by_row(brdf.blinn_phong),
@@ -272,13 +289,13 @@ ASSIGNMENT = Assignment(
             title={"en": "Diffuse and specular together", "ru": "Диффузное и зеркальное вместе"},
             text=_text(
                 "A surface reflects the share $k_d$ = `diffuse` diffusely, and a share in the modified "
-                r"Phong lobe: $f = k_d/\pi + k_s N(n) \cos^n\alpha$, with $k_s$ = `specular` and the $N(n)$ "
-                "of `phong`. Users turn both shares up: where $k_d + k_s > 1$, divide both by their sum, "
-                "so that energy is conserved.",
+                r"Phong lobe: $f = k_d/\pi + k_s N(n) \cos^n\alpha$, with $k_s$ = `specular`, $n$ = "
+                "`exponent` and the $N(n)$ of `phong`. Users may ask for too much: where $k_d + k_s > 1$, "
+                "divide both by their sum, so that energy is conserved.",
                 "Поверхность отражает долю $k_d$ = `diffuse` диффузно, а ещё одну — в модифицированном "
-                r"лепестке Фонга: $f = k_d/\pi + k_s N(n) \cos^n\alpha$, где $k_s$ = `specular`, а $N(n)$ — "
-                "из `phong`. Пользователи выкручивают обе доли: если $k_d + k_s > 1$, разделите обе на их "
-                "сумму, чтобы энергия сохранялась.",
+                r"лепестке Фонга: $f = k_d/\pi + k_s N(n) \cos^n\alpha$, где $k_s$ = `specular`, $n$ = "
+                "`exponent`, а $N(n)$ — из `phong`. Пользователь может задать слишком много: если $k_d + "
+                "k_s > 1$, разделите обе доли на их сумму, чтобы энергия сохранялась.",
             ),
             parts=_parts(
                 brdf.mixed_values,

@@ -16,7 +16,7 @@ __all__ = [
     "BLINN_PHONG",
     "HALF_COSINE",
     "HINTS",
-    "LAMBERT",
+    "LAMBERT_HINTS",
     "MIRROR_COSINE",
     "MIRROR_HINTS",
     "MIXED",
@@ -39,7 +39,7 @@ def _dot(signs: tuple[int, int, int]) -> Cosine:
 
 
 def _of_half(of: str) -> Cosine:
-    """Return the cosine between the half vector and the normal, the viewer or the light."""
+    """Return the cosine between the half vector and the normal or the viewer."""
 
     def cosine(wi: Array, wo: Array) -> Array:
         h = wi + wo
@@ -135,12 +135,6 @@ def _ratio(top: Array, bottom: Array) -> Array:
     return np.where(bottom > 0, top / np.where(bottom > 0, bottom, 1.0), 0.0)
 
 
-LAMBERT: Mapping[str, Function] = {
-    "reflectance-forgotten": _brdf(
-        lambda c, wi, wo, *, reflectance: 1 / np.pi + 0 * reflectance, mirror_cosine
-    ),
-}
-
 MIRROR_COSINE: Mapping[str, Function] = {
     "mirror-about-wrong-axis": lambda wi, wo: _clamped(_dot((1, 1, -1))(wi, wo)),
     "mirror-forgotten": lambda wi, wo: _clamped(_dot((1, 1, 1))(wi, wo)),
@@ -154,15 +148,12 @@ MIRROR_COSINE: Mapping[str, Function] = {
 PHONG_ORIGINAL: Mapping[str, Function] = {
     **_about_mirror(_original),
     "divided-by-viewer-cosine": _times(_original, lambda i, o: i / o),
-    "divided-by-both-cosines": _times(_original, lambda i, o: 1 / o),
     "coefficient-forgotten": _brdf(
         lambda c, wi, wo, *, exponent, coefficient: c**exponent / wi[..., 2], mirror_cosine
     ),
 }
 
-PHONG: Mapping[str, Function] = {
-    **_about_mirror(_phong),
-}
+PHONG: Mapping[str, Function] = _about_mirror(_phong)
 
 HALF_COSINE: Mapping[str, Function] = {
     "mirror-for-half": _brdf(lambda c, wi, wo: c, _dot((-1, -1, 1))),
@@ -236,14 +227,6 @@ HINTS: Mapping[str, Words] = {
         "en": "Your lobe does not depend on the exponent.",
         "ru": "Ваш лепесток не зависит от показателя степени.",
     },
-    "reflectance-forgotten": {
-        "en": "Your value is that of a white surface: multiply by the reflectance ρ.",
-        "ru": "Это значение для белой поверхности: умножьте на коэффициент отражения ρ.",
-    },
-    "halved": {
-        "en": "You divided by 2π, the hemisphere's solid angle: the integral of cos θ over it is π.",
-        "ru": "Вы разделили на 2π, телесный угол полусферы, а интеграл cos θ по полусфере равен π.",
-    },
     "angle-for-cosine": {
         "en": "You gave the angle itself, and its cosine is asked for.",
         "ru": "Вы вернули сам угол, а нужен его косинус.",
@@ -255,10 +238,6 @@ HINTS: Mapping[str, Words] = {
     "divided-by-viewer-cosine": {
         "en": "You divided by the viewer's cosine: it is the light's, cos θi, that the irradiance holds.",
         "ru": "Вы разделили на косинус наблюдателя, а в освещённость входит косинус источника, cos θi.",
-    },
-    "divided-by-both-cosines": {
-        "en": "You divided by both cosines: only cos θi stands below.",
-        "ru": "Вы разделили на оба косинуса: в знаменателе только cos θi.",
     },
     "coefficient-forgotten": {
         "en": "You forgot the coefficient k_s.",
@@ -328,6 +307,18 @@ HINTS: Mapping[str, Words] = {
 }
 """What is said of a misconception in this assignment, before what the catalogue says."""
 
+LAMBERT_HINTS: Mapping[str, Words] = {
+    **HINTS,
+    "halved": {
+        "en": "You divided by 2π, the hemisphere's solid angle: the integral of cos θ over it is π.",
+        "ru": "Вы разделили на 2π, телесный угол полусферы, а интеграл cos θ по полусфере равен π.",
+    },
+    "constant-answer": {
+        "en": "Your value does not depend on the reflectance ρ.",
+        "ru": "Ваше значение не зависит от коэффициента отражения ρ.",
+    },
+}
+
 BLINN_HINTS: Mapping[str, Words] = {
     **HINTS,
     "lobe-normalisation": {
@@ -370,6 +361,10 @@ PHONG_HINTS: Mapping[str, Words] = {
 
 ORIGINAL_HINTS: Mapping[str, Words] = {
     **PHONG_HINTS,
+    "viewer-cosine-forgotten": {
+        "en": "You divided by both cosines: only cos θi stands below.",
+        "ru": "Вы разделили на оба косинуса: в знаменателе только cos θi.",
+    },
     "cosine-twice": {
         "en": "You forgot to divide by cos θi: Phong gave the light that is seen, and a BRDF is that over "
         "the irradiance.",
