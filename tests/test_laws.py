@@ -47,6 +47,12 @@ def blinn(wi, wo, exponent=10.0, constant=lambda n: (n + 2) * (n + 4) / (8 * np.
     return np.where(lit, constant(exponent) * np.maximum(cosine, 0.0) ** exponent, 0.0)
 
 
+@pytest.fixture
+def coarse(monkeypatch):
+    """Spare evaluations where a fault is gross."""
+    monkeypatch.setattr(module, "EVALUATIONS", (100_000, 1_000_000))
+
+
 def exact_blinn(exponent=10.0):
     return BlinnPhong(exponent=exponent)
 
@@ -85,7 +91,9 @@ LEGAL = {
 
 
 @pytest.mark.parametrize("name", LEGAL)
-def test_what_obeys_the_laws_earns_everything(name):
+def test_what_obeys_the_laws_earns_everything(name, request):
+    if name == "anisotropic":  # which takes long
+        request.getfixturevalue("coarse")
     found = judged(LEGAL[name])
     assert (found.share, found.diagnosis) == (1.0, ""), found.text
     assert found.text.startswith("Right: finite and nowhere negative; reciprocal at all ")
@@ -103,7 +111,7 @@ WRONG = {
     ),
     "inf": (lambda wi, wo: 0.1 / (wi[:, 2] < 0.99999), 0, "not-finite", "Gives inf at wi: θ = 0°"),
     "negative": (lambda wi, wo: 0.01 * wi[:, 0] * wo[:, 0], 2, "negative", "Is negative: f = -0.00"),
-    "raises": (raises, 0, "", r"^f raised ValueError: too steep at wi: θ = 0\.\d+°"),
+    "raises": (raises, 0, "", r"^f raised ValueError: too steep at wi: θ = 0[.\d]*°"),
     "nothing": (lambda wi, wo: None, 0, "", "returned None: is a return statement missing?"),
     "words": (lambda wi, wo: "0.3", 0, "", "returned str that is no array of real numbers"),
     "one-way": (
@@ -125,18 +133,23 @@ WRONG = {
         "reflects 100.001 % of the light at every",
     ),
     "gain at grazing": (gap, 2, "gains-energy", r"at θ = 89\.\d+° it reflects 150 % of the light"),
-    "gain in a spot": (bright_spot, 1, "not-reciprocal", r"Gains energy: at θ = [01].\d+° it reflects 120 %"),
+    "gain in a spot": (
+        bright_spot,
+        1,
+        "not-reciprocal",
+        r"Gains energy: at θ = [01][.\d]*° it reflects 120 %",
+    ),
     "original": (
         PhongOriginal(exponent=10.0, coefficient=0.5).evaluate,
         1,
         "not-reciprocal",
-        "it reflects 18470 % of the light, and more as θ → 90°",
+        "it reflects 1[89]000 % of the light, and more as θ → 90°",
     ),
 }
 
 
 @pytest.mark.parametrize("name", WRONG)
-def test_what_breaks_a_law_is_told_so_with_a_witness(name):
+def test_what_breaks_a_law_is_told_so_with_a_witness(name, coarse):
     function, kept, diagnosis, says = WRONG[name]
     found = judged(function)
     assert (round(3 * found.share), found.diagnosis) == (kept, diagnosis), found.text
@@ -152,7 +165,7 @@ def test_a_function_that_answers_differently_is_judged_for_nothing(rng):
     assert "cannot be judged for reciprocity, conservation of energy" in found.text
 
 
-def test_a_witness_can_be_typed_in():
+def test_a_witness_can_be_typed_in(coarse):
     found = judged(lambda wi, wo: lambert(wi, wo) * wi[:, 2])
     numbers = [float(each) for each in re.findall(r"(?:θ|φ) = ([\d.]+)°", found.text)]
     assert all(each % 10 == 0 for each in numbers)
@@ -178,7 +191,7 @@ def test_habits_are_remarked_upon_and_cost_nothing():
 # ---------------------------------------------------------------------------------- the other way round
 
 
-def test_a_task_may_ask_for_what_breaks_a_law():
+def test_a_task_may_ask_for_what_breaks_a_law(coarse):
     asked = {"expected": {"reciprocity": "violated"}, "least": 0.1}
     assert judged(lambda wi, wo: lambert(wi, wo) * wi[:, 2], **asked).share == 1
     tame = judged(lambert, **asked)
@@ -190,7 +203,7 @@ def test_a_task_may_ask_for_what_breaks_a_law():
     assert (nowhere.share, nowhere.diagnosis) == (0.0, "not-finite")
 
 
-def test_laws_are_weighed_and_may_be_left_out():
+def test_laws_are_weighed_and_may_be_left_out(coarse):
     wrong = {"weights": {"energy": 8.0}}
     assert judged(lambda wi, wo: 2 * lambert(wi, wo), **wrong).share == pytest.approx(0.2)
     assert judged(lambda wi, wo: 2 * lambert(wi, wo), laws=("values", "reciprocity")).share == 1
@@ -199,7 +212,7 @@ def test_laws_are_weighed_and_may_be_left_out():
 # ------------------------------------------------------------------------------- what it should be
 
 
-def test_black_and_constant_earn_nothing_where_something_else_is_asked_for():
+def test_black_and_constant_earn_nothing_where_something_else_is_asked_for(coarse):
     def nothing(wi, wo, exponent=10.0):
         return np.zeros(len(wi))
 
@@ -213,7 +226,7 @@ def test_black_and_constant_earn_nothing_where_something_else_is_asked_for():
     assert judged(lambda wi, wo: lambert(wi, wo, 0.5), reference=lambda: Lambert(reflectance=0.5)).share == 1
 
 
-def test_the_misconception_is_named_beside_the_law():
+def test_the_misconception_is_named_beside_the_law(coarse):
     parameters = ({"exponent": 10.0}, {"exponent": 40.0})
     options = {"parameters": parameters, "reference": exact_blinn}
     assert judged(blinn, **options).share == 1
@@ -233,7 +246,7 @@ def test_the_misconception_is_named_beside_the_law():
     assert re.search(r"wrong at \d+ of 256, as at wi: .* wo: θ = 89\.9", few.text)
 
 
-def test_variants_of_the_assignment_are_named():
+def test_variants_of_the_assignment_are_named(coarse):
     def halves(wi, wo, exponent):
         return blinn(wi, wo, exponent / 2)
 

@@ -193,17 +193,16 @@ def remarks(notes: tuple[str, ...], language: str) -> list[str]:
     return [tell(language, key) for key in said]
 
 
-def share_of_light(value: float) -> str:
-    """Return a share as a percentage, with digits enough to show an excess over the whole.
+def share_of_light(value: float, error: float = 0.0) -> str:
+    """Return a share as a percentage, in as many digits as are known and as show an excess over the whole.
 
-    >>> share_of_light(1.07478), share_of_light(1.0000012), share_of_light(1), share_of_light(184.7)
-    ('107.5 %', '100.00012 %', '100 %', '18470 %')
+    >>> share_of_light(1.07478), share_of_light(1.0000012), share_of_light(1), share_of_light(184.7, 10.0)
+    ('107.5 %', '100.00012 %', '100 %', '18000 %')
     """
     percent = 100 * float(value)
+    digits = 4 if error < 1e-3 * value else 2
     if percent > 100 * (1 + 1e-12):
-        digits = next((n for n in (4, 6, 8, 10) if float(f"{percent:.{n}g}") > 100), 14)
-    else:
-        digits = 4
+        digits = next((n for n in (digits, 4, 6, 8, 10) if float(f"{percent:.{n}g}") > 100), 14)
     return f"{float(f'{percent:.{digits}g}'):.12g} %"
 
 
@@ -235,7 +234,7 @@ def _energy(verdict: Verdict, language: str, mutual: bool) -> tuple[str, str]:
     theta = _degrees(details["theta_deg"])
     if not details["isotropic"] and details["theta_deg"] > 0:
         theta += f", φ = {_degrees(details['phi_deg'])}"
-    share = share_of_light(value)
+    share = share_of_light(value, float(np.max(verdict.estimate.error)))
     even = value - details["least"] < 1e-6 * value
     if verdict.outcome is Outcome.HOLDS and even:
         return "conserves", tell(language, "even", share=share_of_light(min(value, 1.0)))
