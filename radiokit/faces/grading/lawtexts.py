@@ -197,10 +197,10 @@ def share_of_light(value: float, error: float = 0.0) -> str:
     """Return a share as a percentage, in as many digits as are known and as show an excess over the whole.
 
     >>> share_of_light(1.07478), share_of_light(1.0000012), share_of_light(1), share_of_light(184.7, 10.0)
-    ('107.5 %', '100.00012 %', '100 %', '18000 %')
+    ('107.5 %', '100.00012 %', '100 %', '18500 %')
     """
     percent = 100 * float(value)
-    digits = 4 if error < 1e-3 * value else 2
+    digits = 4 if error < 1e-3 * value else 3
     if percent > 100 * (1 + 1e-12):
         digits = next((n for n in (digits, 4, 6, 8, 10) if float(f"{percent:.{n}g}") > 100), 14)
     return f"{float(f'{percent:.{digits}g}'):.12g} %"
