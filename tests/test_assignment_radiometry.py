@@ -392,6 +392,7 @@ ARGUMENTS = {
     "reflected_radiance": "rho, L, c, w",
 }
 PRELUDE = """
+import math
 from numpy import abs, arctan, arctan2, cos, cross, cumsum, degrees, floor, maximum, mean, pi, radians, sin
 from numpy import sort, sqrt, sum, trapezoid, where
 from numpy.linalg import norm
@@ -434,6 +435,8 @@ PLANTED = [
         ("luminance", "683 / pi * trapezoid(m * v, w, axis=-1)", 1.5, "sign-of-step"),
         ("luminance", "683.002 / pi * abs(trapezoid(m * v, w, axis=-1))", 1.75, "efficacy-rounded"),
         ("reflected_radiance", "rho / pi * cumsum(L * up(c) * w, -1)[..., -1]", 1.75, "imprecise"),
+        ("isotropic_irradiance", "f / (4 * pi * math.pow(d, 2))", 1.5, "out-of-range"),
+        ("cone_irradiance", "3.14159 * L * sin(a) ** 2", 1.75, "constant-rounded"),
         # Constants
         ("cone_solid_angle", "4 * pi * (1 - cos(a))", 0.375, "doubled"),
         ("cone_solid_angle", "2 * 3.14 * (1 - cos(a))", 0.75, "pi-rounded"),

@@ -11,7 +11,7 @@ from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.result import Result
 from radiokit.faces.grading.words import say
 
-__all__ = ["asked", "close", "fitted", "is_right", "out_of_range"]
+__all__ = ["asked", "close", "fitted", "is_extreme", "is_right", "out_of_range"]
 
 RANGE = 1e100
 """Beyond which number, or below its reciprocal, products of a few may overflow or underflow."""
@@ -82,7 +82,17 @@ def out_of_range(
     lost = good | ~np.isfinite(answer) | ((answer == 0) & (right != 0))
     extreme = np.zeros(len(right), dtype=bool)
     for value in given.values():
-        size = np.abs(np.broadcast_to(value, (len(right),) if value.ndim == 0 else value.shape))
-        wide = (size > widest) | ((size > 0) & (size < 1 / widest))
+        wide = np.broadcast_to(_is_wide(value, widest), value.shape or (len(right),))
         extreme |= wide.reshape(len(right), -1).any(axis=1)
     return bool(lost.all() and extreme[bad].all())
+
+
+def is_extreme(value: Array) -> bool:
+    """Return whether products of a few of these numbers may overflow or underflow."""
+    return bool(_is_wide(value, RANGE).any())
+
+
+def _is_wide(value: Array, widest: float) -> Array:
+    size = np.abs(value)
+    wide: Array = (size > widest) | ((size > 0) & (size < 1 / widest))
+    return wide

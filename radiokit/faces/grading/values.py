@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from itertools import combinations
 from typing import Any
 
 import numpy as np
 
 from radiokit.faces.diagnosis.catalogue import CATALOGUE
 from radiokit.faces.diagnosis.diagnose import diagnose
-from radiokit.faces.diagnosis.misconception import LANGUAGES, Guess, Misconception, structural
-from radiokit.faces.diagnosis.problem import Problem
 from radiokit.faces.diagnosis.result import Diagnosis
-from radiokit.faces.grading.asking import asked, close, fitted, is_right, out_of_range
+from radiokit.faces.grading.arguments import argument_mistakes
+from radiokit.faces.grading.asking import asked, close, fitted, is_extreme, is_right, out_of_range
 from radiokit.faces.grading.evidence import clause, hint_for, joined, rows, wrong_at
 from radiokit.faces.grading.finding import Callee, Finding
 from radiokit.faces.grading.protocol import Array
-from radiokit.faces.grading.words import say
-from radiokit.facts.errors import ParameterError, RadiokitError
+from radiokit.faces.grading.result import Result
+from radiokit.faces.grading.words import say, sentence
+from radiokit.facts.errors import ParameterError
 
 __all__ = ["Values", "hint_for"]
 
@@ -33,7 +32,7 @@ SINGLE, DOUBLE = 2e-5, 1e-6
 NAMES = {"float32": "single-precision", "float32-range": "single-precision", "constant": "constant-answer"}
 """Diagnoses by sentences, where they differ."""
 FEWEST = 5
-"""How many answers a diagnosis of some of them takes."""
+"""How many answers it takes to tell something of them all."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -123,10 +122,10 @@ class Values:
         allowed = self._allowed(right, self.rtol)
         first, mode = asked(callee, given, right, seed, allowed)
         if not first.ok:
-            return Finding(share=0.0, text=say(language, "call", function=callee.name, error=first.error))
+            return _raised(callee.name, first, given, language, hints)
         answer, problem = fitted(first, right, language)
         if problem:
-            return Finding(share=0.0, text=problem)
+            return Finding(share=0.0, text=joined(problem))
         good = close(answer, right, allowed)
         if not good.all():
             return self._wrong(answer, right, given, good, language=language, hints=hints, shown=shown)
@@ -135,7 +134,8 @@ class Values:
             right = right[::-1]
         second = callee.call(*turned, mode=mode, seed=seed)
         if not is_right(second, right, self._allowed(right, self.rtol)):
-            return Finding(share=0.0, text=say(language, "not-repeatable"), diagnosis="not-repeatable")
+            text = joined(say(language, "not-repeatable"))
+            return Finding(share=0.0, text=text, diagnosis="not-repeatable")
         if mode == "batch":
             return Finding(share=1.0, text=say(language, "full"))
         return Finding(share=1.0, text=say(language, "full-one-by-one"))
@@ -169,7 +169,7 @@ class Values:
         full, count = wrong_at(answer, right, given, good, language, shown=shown)
         found = self._diagnosed(answer.astype(float), right, given, language) if right.ndim == 1 else None
         if found is None or found.first is None:
-            notes = "; ".join(found.notes) if found is not None and shown else ""
+            notes = "; ".join(found.notes) if found is not None and shown and not found.right else ""
             return Finding(share=share, text=joined(full, notes))
         first = found.first
         if first.name == "wrong-at-few":  # the evidence says more
@@ -209,14 +209,18 @@ class Values:
         numbers = answer.astype(float)
         if len(right) > 1 and not np.ptp(numbers):
             return ("constant", {"value": f"{numbers.flat[0]:.6g}"}) if np.ptp(right) else ("", {})
-        single = answer.dtype == np.float32 or bool(np.all(numbers == numbers.astype(np.float32)))
+        short = len(right) >= FEWEST and bool(np.all(numbers == numbers.astype(np.float32)))
+        single = short or answer.dtype == np.float32
         eps = float(np.finfo(np.float32 if single else np.float64).eps)
         terms = 0.0 if self.terms is None else np.abs(self.terms(**given))
         near = np.maximum(np.maximum((SINGLE if single else DOUBLE) * size, SLACK * eps * terms), self.atol)
         if not np.all(np.abs(numbers - right) <= near):
             return "", {}
-        error = np.max((np.abs(numbers - right) / size)[size > self.atol], initial=0.0)
-        return "float32" if single else "imprecise", {"error": f"{error:.1g}", "rtol": self.rtol}
+        deviations = (numbers / right - 1)[size > self.atol]
+        values = {"error": f"{np.max(np.abs(deviations), initial=0.0):.1g}", "rtol": self.rtol}
+        if len(deviations) >= FEWEST and np.ptp(deviations) < 0.01 * np.abs(deviations).min():
+            return "constant-rounded", values
+        return "float32" if single else "imprecise", values
 
     def _diagnosed(
         self, answer: Array, right: Array, given: Mapping[str, Array], language: str
@@ -224,11 +228,10 @@ class Values:
         """Return what explains the answers or, if nothing does, those where the right one is not 0."""
         size = len(right)
         context = dict(self.context(**given)) if self.context is not None else {}
-        columns = {
-            name: value for name, value in {**given, **context}.items() if _is_column(name, value, size)
-        }
+        every = {**given, **context}
+        columns = {name: value for name, value in every.items() if _is_column(name, value, size)}
         others = {name: np.asarray(variant(**given), dtype=float) for name, variant in self.variants.items()}
-        usual = (*CATALOGUE, *_arguments(self.reference, given, right))
+        usual = (*CATALOGUE, *argument_mistakes(self.reference, given, right))
 
         def reference(**inputs: Any) -> Any:
             return self.reference(**{name: inputs.get(name, given[name]) for name in given})
@@ -251,37 +254,25 @@ class Values:
             inputs=some,
             variants={name: values[lit] for name, values in others.items()},
             language=language,
-            catalogue=(*CATALOGUE, *_arguments(self.reference, lit_given, right[lit])),
+            catalogue=(*CATALOGUE, *argument_mistakes(self.reference, lit_given, right[lit])),
         )
         return partly if partly.suspicions else found
 
 
-def _arguments(
-    reference: Callable[..., Any], given: Mapping[str, Array], right: Array
-) -> tuple[Misconception, Misconception]:
-    """Return the misconceptions that two arguments are exchanged, and that one is not used."""
-
-    def explained(changes: Iterable[tuple[str, dict[str, Array]]]) -> Callable[[Problem], Iterable[Guess]]:
-        def explain(problem: Problem) -> Iterable[Guess]:
-            for detail, changed in changes:
-                try:
-                    values = np.asarray(reference(**{**given, **changed}), dtype=float)
-                except (RadiokitError, ArithmeticError, ValueError):
-                    continue
-                if values.shape == right.shape:
-                    yield Guess(values[problem.index], detail=detail)
-
-        return explain
-
-    alike = [(a, b) for a, b in combinations(given, 2) if given[a].shape == given[b].shape]
-    swaps = [(f"{a} ↔ {b}", {a: given[b], b: given[a]}) for a, b in alike]
-    ones = [(name, {name: np.ones_like(value)}) for name, value in given.items() if value.ndim == 1]
-    swapped = [say(language, "swapped") for language in LANGUAGES]
-    ignored = [say(language, "ignored") for language in LANGUAGES]
-    return (
-        structural("arguments-swapped", explained(swaps), swapped[0], swapped[1], prior=0.5),
-        structural("argument-ignored", explained(ones), ignored[0], ignored[1], prior=0.05),
-    )
+def _raised(
+    name: str,
+    result: Result,
+    given: Mapping[str, Array],
+    language: str,
+    hints: Mapping[str, Mapping[str, str]],
+) -> Finding:
+    """Say what a function did instead of answering, and why if its inputs leave the range of numbers."""
+    text = say(language, "call", function=name, error=result.error)
+    if result.raised in ("OverflowError", "ZeroDivisionError") and any(map(is_extreme, given.values())):
+        hint = hints.get("out-of-range", {}).get(language, "")
+        text = f"{text}. {sentence(hint)}" if hint else text
+        return Finding(share=0.0, text=text, diagnosis="out-of-range", confidence=1.0)
+    return Finding(share=0.0, text=text)
 
 
 def _is_column(name: str, value: Any, size: int) -> bool:

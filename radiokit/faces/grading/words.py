@@ -39,6 +39,11 @@ SENTENCES: Mapping[str, Words] = {
         "ru": "формула верна, но числа выходят за пределы float32 ({bad} из {count} {noun}): "
         "используйте float64",
     },
+    "constant-rounded": {
+        "en": "a constant is rounded, such as π: the relative error is {error} at all inputs, "
+        "and {rtol:g} is allowed",
+        "ru": "округлена константа, например π: относительная ошибка всюду {error}, а допускается {rtol:g}",
+    },
     "out-of-range": {
         "en": "the formula is right, but an intermediate number overflows or underflows at {bad} of {count} "
         "{noun}: change the order of the operations",
@@ -143,7 +148,7 @@ def sentence(text: str) -> str:
     """
     text = text.strip().rstrip(".;")
     first = text[:1] if "Α" <= text[:1] <= "ω" else text[:1].upper()
-    return f"{first}{text[1:]}{'' if text.endswith('?') else '.'}" if text else ""
+    return f"{first}{text[1:]}{'' if text.endswith(('?', '!')) else '.'}" if text else ""
 
 
 def _noun(language: str, count: int) -> str:

@@ -87,7 +87,7 @@ QUESTION = put_together(
     text={
         "en": r"""
 Return the solid angle [sr] of a triangle that is seen from the origin, by the formula of Van Oosterom and
-Strackee,
+Strackee (1983),
 $$\tan\frac{\Omega}{2} = \frac{|\mathbf a \cdot (\mathbf b \times \mathbf c)|}
 {abc + (\mathbf a \cdot \mathbf b)\,c + (\mathbf b \cdot \mathbf c)\,a + (\mathbf c \cdot \mathbf a)\,b} ,$$
 where $a = |\mathbf a|$ and so on.
@@ -100,18 +100,18 @@ differences $\mathbf b - \mathbf a$, $\mathbf c - \mathbf a$ does not; and trian
 whose $\Omega$ is above $\pi$: mind the quadrant. The relative error is to be $10^{-9}$.
 """,
         "ru": r"""
-Найдите телесный угол [ср], под которым треугольник виден из начала координат, по формуле ван Остерома и
-Страки
-$$\tg\frac{\Omega}{2} = \frac{|\mathbf a \cdot (\mathbf b \times \mathbf c)|}
+Найдите телесный угол [ср], под которым треугольник виден из начала координат, по формуле Ван Остерома и
+Страки (Van Oosterom, Strackee, 1983)
+$$\operatorname{tg}\frac{\Omega}{2} = \frac{|\mathbf a \cdot (\mathbf b \times \mathbf c)|}
 {abc + (\mathbf a \cdot \mathbf b)\,c + (\mathbf b \cdot \mathbf c)\,a + (\mathbf c \cdot \mathbf a)\,b} ,$$
 где $a = |\mathbf a|$ и так далее.
 
 - `a`, `b`, `c`: вершины [м], массивы `(N, 3)`, обход любой; ответ имеет форму `(N,)`.
 
-Ответ неотрицателен: от 0 до $2\pi$. **Трудные входы:** малые далёкие треугольники (до $10^{-7}$
-расстояния), где смешанное произведение самих вершин теряет все цифры, а произведение с разностями
-$\mathbf b - \mathbf a$, $\mathbf c - \mathbf a$ — нет; и треугольники вокруг глаза, у которых $\Omega$
-больше $\pi$: следите за четвертью. Относительная ошибка не должна превышать $10^{-9}$.
+Ответ неотрицателен: от 0 до $2\pi$. **Трудные входы:** малые далёкие треугольники (размером
+до $10^{-7}$ расстояния), где смешанное произведение самих вершин теряет все цифры, а произведение
+с разностями $\mathbf b - \mathbf a$, $\mathbf c - \mathbf a$ — нет; и треугольники вокруг глаза, у которых
+$\Omega$ больше $\pi$: следите за четвертью. Относительная ошибка не должна превышать $10^{-9}$.
 """,
     },
     reference=_triangle,
