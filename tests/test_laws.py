@@ -307,6 +307,10 @@ def greedy(wi, wo, exponent):
     return 1.05 * loop(wi, wo, exponent)
 
 
+def renamed(wi, wo, n):
+    return loop(wi, wo, n)
+
+
 def mixing(wi, wo, exponent):
     mirror = wo * np.array([-1, -1, 1])
     return (exponent + 2) / (2 * np.pi) * max(np.sum(wi * mirror), 0.0) ** exponent
@@ -324,7 +328,7 @@ def array(wi, wo, exponent):
 """
 
 
-def test_loops_are_searched_more_coarsely_and_judged_alike(tmp_path):
+def test_loops_are_searched_more_coarsely_and_judged_alike(tmp_path, monkeypatch):
     (tmp_path / "theirs.py").write_text(THEIRS)
     judge = Laws(parameters=({"exponent": 9.0},), reference=lambda exponent: Phong(exponent=exponent))
 
@@ -337,6 +341,12 @@ def test_loops_are_searched_more_coarsely_and_judged_alike(tmp_path):
         assert "12500 pairs" in loop.text
         assert "65536 pairs" in array.text
         assert "It prints while it computes: remove that." in array.text
+        with monkeypatch.context() as patched:  # a clock that stands still
+            patched.setattr(time, "perf_counter", lambda: 0.0)
+            assert finding("array") == array
+        renamed = finding("renamed")
+        assert renamed.share == 0
+        assert renamed.text.endswith("its parameters must have the names that the question gives them")
         greedy = finding("greedy")
         assert greedy.share == pytest.approx(2 / 3)
         assert "At θ = 0° it reflects 105 % of the light".lower() in greedy.text.lower()

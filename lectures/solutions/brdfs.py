@@ -20,7 +20,7 @@ def mirror_cosine(wi, wo):
 
 
 def phong_original(wi, wo, exponent, coefficient):
-    """Swapping wi and wo swaps the cosine below, and at grazing angles it lets the value grow without bound."""
+    """Exchanging wi and wo exchanges the cosine below, and at grazing angles it is as small as you like."""
     cos_i = np.where(wi[..., 2] > 0, wi[..., 2], 1.0)
     return above_horizon(wi, wo, coefficient * mirror_cosine(wi, wo) ** exponent / cos_i)
 

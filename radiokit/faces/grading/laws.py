@@ -39,8 +39,8 @@ class Laws:
 
     What it is judged by are evaluations, never a clock: the same function earns the same on any machine. A
     function of arrays is searched as finely as ``rk.check`` does; one of single pairs more coarsely, every
-    1.2° in place of 0.15°. Where its albedo is then too near 1 to tell, it is asked once more, ten times as
-    often. If that does not tell either, the law counts as kept where what was measured is within the limit:
+    1.2° or so in place of 0.15°. Where its albedo is then too near 1 to tell, it is asked once more, at least
+    ten times as often. If that does not tell either, the law counts as kept where what was measured is within the limit:
     nobody loses points by a fault that was not seen.
 
     Parameters
@@ -53,10 +53,11 @@ class Laws:
         Each law's share of the points, above 0, by law; 1 by default.
     parameters : callable or sequence of mappings
         The keyword arguments with which the function is judged, each in turn; or from a generator to them. A
-        law must turn out as expected with all of them.
+        law must turn out as expected with all of them. The function's parameters must have these names.
     reference : callable, optional
-        ``reference(**parameters)`` gives the BSDF that the function should be. Where it is another, the
-        misconception is named; a constant, or what no known misconception leads to, earns nothing.
+        ``reference(**parameters)`` gives the BSDF that the function should be, of one wavelength. Where it is
+        another, the misconception is named; a constant, or what no known misconception leads to, earns
+        nothing.
     variants : mapping
         What wrong solutions give, by the name of the misconception: ``{name: f(wi, wo, **parameters)}``.
     least : float
@@ -215,5 +216,8 @@ class Laws:
 def _with(given: Mapping[str, Any], text: str, language: str) -> str:
     if not given:
         return text
-    named = ", ".join(f"{name} = {value:g}" for name, value in given.items())
+    named = ", ".join(
+        f"{name} = {value:g}" if isinstance(value, int | float) else f"{name} = {value}"
+        for name, value in given.items()
+    )
     return tell(language, "given", parameters=named, text=text)

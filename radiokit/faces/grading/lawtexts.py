@@ -23,6 +23,10 @@ LAW_SENTENCES: Mapping[str, Words] = {
         "en": "; judging takes about {pairs} pairs of directions: compute with whole arrays, without loops",
         "ru": "; для проверки нужно около {pairs} пар направлений: считайте целыми массивами, без циклов",
     },
+    "keyword": {
+        "en": "; its parameters must have the names that the question gives them",
+        "ru": "; параметры должны называться так, как в условии",
+    },
     "at": {"en": " at {place}", "ru": " при {place}"},
     "directions": {
         "en": "wi: θ = {wi[0]}, φ = {wi[1]}; wo: θ = {wo[0]}, φ = {wo[1]}",
@@ -178,6 +182,8 @@ def failed(error: CallableError, language: str) -> str:
     text = tell(language, key, function=function, problem=problem.removeprefix("raised "))
     if "took longer than" in problem:
         text += tell(language, "slow", pairs=ASKED)
+    if "unexpected keyword argument" in problem:
+        return text + tell(language, "keyword")
     if error.fields.get("wi") is None:
         return text
     return text + tell(language, "at", place=place_of(error.fields["wi"], error.fields["wo"], language))

@@ -91,8 +91,8 @@ $$f_r(\omega_i, \omega_o) = \frac{\mathrm{d}L_o}{L_i \cos\theta_i \, \mathrm{d}\
 
 A physical one is reciprocal, $f_r(\omega_i, \omega_o) = f_r(\omega_o, \omega_i)$, and conserves energy:
 $\int f_r \cos\theta_o \, \mathrm{d}\omega_o \le 1$ for every $\omega_i$. Write the classical models, find
-which of the laws each one obeys, and mend the one that does not. NumPy suffices; a function that takes one
-pair of directions at a time counts as well.
+which of the laws each one obeys, and mend the one that does not. Keep the names of the functions and of
+their parameters. NumPy suffices; a function that takes one pair of directions at a time counts as well.
 
 You see how you fare with **ordinary inputs**. **Hard inputs** (grazing directions, the horizon, exact mirror
 pairs) are hidden, and so are the **laws**, by which BRDFs are judged over the whole hemisphere. A relative
@@ -106,8 +106,8 @@ $$f_r(\omega_i, \omega_o) = \frac{\mathrm{d}L_o}{L_i \cos\theta_i \, \mathrm{d}\
 
 Физически корректная ДФО обратима, $f_r(\omega_i, \omega_o) = f_r(\omega_o, \omega_i)$, и сохраняет энергию:
 $\int f_r \cos\theta_o \, \mathrm{d}\omega_o \le 1$ для любого $\omega_i$. Напишите классические модели,
-выясните, какие законы выполняет каждая из них, и исправьте ту, которая их нарушает. Достаточно NumPy;
-годится и функция, принимающая по одной паре направлений за раз.
+выясните, какие законы выполняет каждая из них, и исправьте ту, которая их нарушает. Сохраните имена функций
+и их параметров. Достаточно NumPy; годится и функция, принимающая по одной паре направлений за раз.
 
 Результат на **обычных входах** вы видите сразу. **Трудные входы** (скользящие направления, горизонт, точные
 зеркальные пары) скрыты, как и проверка **законов** по всей полусфере. Допускается относительная ошибка
