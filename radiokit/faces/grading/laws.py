@@ -39,9 +39,9 @@ class Laws:
 
     What it is judged by are evaluations, never a clock: the same function earns the same on any machine. A
     function of arrays is searched as finely as ``rk.check`` does; one of single pairs more coarsely, every
-    1.2° or so in place of 0.15°. Where its albedo is then too near 1 to tell, it is asked once more, at least
-    ten times as often. If that does not tell either, the law counts as kept where what was measured is within the limit:
-    nobody loses points by a fault that was not seen.
+    1.2° or so in place of 0.15°. Where its albedo is then too near 1 to tell, it is asked once more, at
+    least ten times as often. If that does not tell either, the law counts as kept where what was measured is
+    within the limit: nobody loses points by a fault that was not seen.
 
     Parameters
     ----------
