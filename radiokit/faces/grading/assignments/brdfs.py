@@ -129,7 +129,7 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
                 brdf.by_row(brdf.lambert),
                 {},
                 Laws(
-                    parameters=({"reflectance": 1.0},),
+                    parameters=({"reflectance": 0.9},),
                     reference=brdf.lambert,
                     least=0.5,
                 ),
@@ -163,13 +163,13 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
                 r"Phong drew highlights as $k_s \cos^n\alpha$ for unit flux on a plane that faces the "
                 r"light, without the cosine of incidence. As a BRDF this is $f = k_s \cos^n\alpha / "
                 r"\cos\theta_i$, with $k_s$ = `coefficient` in $\mathrm{sr}^{-1}$, $n$ = `exponent`, and "
-                r"$\cos\alpha$ as in `mirror_cosine`. Write it as it stands. It breaks both laws, and the "
-                "hidden part shows where: think why before you look.",
+                r"$\cos\alpha$ as in `mirror_cosine`. Write it as it stands. It breaks both laws: find out "
+                "why, and at which angles.",
                 r"Фонг изображал блики как $k_s \cos^n\alpha$ при единичном потоке на площадку, повёрнутую "
                 r"к источнику, без косинуса угла падения. В виде ДФО это $f = k_s \cos^n\alpha / "
                 r"\cos\theta_i$, где $k_s$ = `coefficient` в $\mathrm{ср}^{-1}$, $n$ = `exponent`, а "
-                r"$\cos\alpha$ — как в `mirror_cosine`. Запишите её как есть. Она нарушает оба закона; "
-                "подумайте почему. Где именно, покажет скрытая часть.",
+                r"$\cos\alpha$ — как в `mirror_cosine`. Запишите её как есть. Она нарушает оба закона: "
+                "выясните, почему и при каких углах.",
             ),
             parts=_parts(
                 brdf.by_row(brdf.phong_original),
