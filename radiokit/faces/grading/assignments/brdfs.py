@@ -9,6 +9,7 @@ import numpy as np
 
 from radiokit.faces.grading.assignment import Assignment
 from radiokit.faces.grading.assignments._brdfs import functions as brdf
+from radiokit.faces.grading.assignments._brdfs import hints
 from radiokit.faces.grading.assignments._brdfs import variants as wrong
 from radiokit.faces.grading.laws import Laws
 from radiokit.faces.grading.question import Part, Question
@@ -135,7 +136,7 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
                 ),
                 reflectance=_shares,
             ),
-            hints=wrong.LAMBERT_HINTS,
+            hints=hints.LAMBERT_HINTS,
             seconds=SECONDS,
         ),
         Question(
@@ -153,7 +154,7 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
                 "— единичные векторы формы `(3,)` или `(N, 3)`.",
             },
             parts=_parts(brdf.mirror_cosine, wrong.MIRROR_COSINE),
-            hints=wrong.MIRROR_HINTS,
+            hints=hints.MIRROR_HINTS,
         ),
         Question(
             signature="phong_original(wi, wo, exponent, coefficient)",
@@ -183,7 +184,7 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
                 exponent=_exponents(100),
                 coefficient=_shares,
             ),
-            hints=wrong.ORIGINAL_HINTS,
+            hints=hints.ORIGINAL_HINTS,
             seconds=SECONDS,
         ),
         Question(
@@ -209,7 +210,7 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
                 ),
                 exponent=_exponents(100),
             ),
-            hints=wrong.PHONG_HINTS,
+            hints=hints.PHONG_HINTS,
             seconds=SECONDS,
         ),
         Question(
@@ -227,7 +228,7 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
                 "противоположны.",
             },
             parts=_parts(brdf.half_cosine, wrong.HALF_COSINE),
-            hints=wrong.HINTS,
+            hints=hints.HINTS,
         ),
         Question(
             signature="blinn_phong(wi, wo, exponent)",
@@ -256,7 +257,7 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
                 ),
                 exponent=_exponents(100),
             ),
-            hints=wrong.BLINN_HINTS,
+            hints=hints.BLINN_HINTS,
             seconds=SECONDS,
         ),
         Question(
@@ -281,7 +282,7 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
                     visibility="hidden",
                 ),
             ),
-            hints=wrong.HINTS,
+            hints=hints.HINTS,
         ),
         Question(
             signature="mixed(wi, wo, diffuse, specular, exponent)",
@@ -310,7 +311,7 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
                 specular=_shares,
                 exponent=_exponents(100),
             ),
-            hints=wrong.PHONG_HINTS,
+            hints=hints.PHONG_HINTS,
             seconds=SECONDS,
         ),
     ),

@@ -40,13 +40,20 @@ ORDINARY = 48
 
 
 def ordinary_pairs(**parameters: Parameter) -> Callable[[np.random.Generator], Inputs]:
-    """Return inputs: pairs up to 75° from the normal, half of them near the mirror pair, and parameters."""
+    """Return inputs: pairs up to 75° from the normal, and parameters.
+
+    Half of the pairs are near the mirror pair, and an eighth beyond 90° from it.
+    """
 
     def inputs(rng: np.random.Generator) -> Inputs:
         wo = _upper(rng, ORDINARY, 75.0)
         wi = _upper(rng, ORDINARY, 75.0)
         near = np.arange(ORDINARY) % 2 == 0
         wi[near] = _moved(rng, reflect(wo[near]), 0.3)
+        back = np.arange(ORDINARY) % 8 == 1
+        oblique = np.radians(rng.uniform(55, 75, back.sum()))
+        wo[back] = spherical_to_cartesian(oblique, rng.uniform(0, 2 * np.pi, back.sum()))
+        wi[back] = _moved(rng, wo[back], 0.1)
         return {"wi": wi, "wo": wo, **{name: draw(rng, ORDINARY) for name, draw in parameters.items()}}
 
     return inputs
