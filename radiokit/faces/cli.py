@@ -12,6 +12,7 @@ import typer
 from radiokit.faces.bench.command import bench
 from radiokit.faces.console import fail, progress_bar, show_json, show_report, show_table, write
 from radiokit.faces.derive import derive
+from radiokit.faces.grading.handout.command import assignment
 from radiokit.faces.lecture import lecture
 from radiokit.faces.models import models
 from radiokit.faces.render.command import render
@@ -194,6 +195,7 @@ def _show_case(each: Any) -> None:
     write(f"  methods: {', '.join(each.methods)}")
 
 
+app.command()(assignment)
 app.command()(bench)
 app.command()(derive)
 app.command()(lecture)
