@@ -18,6 +18,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -26,9 +27,10 @@ from radiokit.faces.grading.grades import Grade, QuestionGrade
 from radiokit.faces.grading.handout.cells import code, notebook
 from radiokit.faces.grading.handout.texts import tell
 from radiokit.faces.grading.protocol import plain_text
+from radiokit.faces.grading.tools import without_tools
 from radiokit.facts.errors import RadiokitError, TargetError
 
-__all__ = ["GRADED", "FeedbackError", "kernel_check", "kernel_points"]
+__all__ = ["GRADED", "FeedbackError", "kernel_check", "kernel_points", "submitted"]
 
 GRADED = "RADIOKIT_GRADE"
 """The variable of the environment that names a grade that is already there, where a plugin has graded."""
@@ -103,6 +105,13 @@ def kernel_points(question: str, *, assignment: str, language: str = "en", secon
     return earned
 
 
+def submitted(sources: Iterable[str]) -> str:
+    """Return a notebook of cells for the grader, without what asks for checks."""
+    return notebook(
+        [code(f"cell-{number}", without_tools(source)) for number, source in enumerate(sources, start=1)]
+    )
+
+
 def _is_here(assignment: str) -> bool:
     return assignment in list_assignments() or Path(assignment).is_file()
 
@@ -115,8 +124,7 @@ def _graded(question: str, assignment: str, language: str, seconds: float) -> Qu
     if not _is_here(assignment):
         raise TargetError(tell(language, "elsewhere", question=question))
     target = str(Path(assignment).resolve()) if Path(assignment).suffix == ".py" else assignment
-    cells = [code(f"cell-{number}", source) for number, source in enumerate(_executed(), start=1)]
-    return _apart(notebook(cells), question, target, language, seconds)
+    return _apart(submitted(_executed()), question, target, language, seconds)
 
 
 def _executed() -> list[str]:

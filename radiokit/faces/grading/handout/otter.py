@@ -79,7 +79,7 @@ def _question(
         answer = f"{header(question, language)}\n{BLANK}"
     else:
         marked = f"{INDENT}# BEGIN SOLUTION\n{solution.bodies[name]}\n{INDENT}# END SOLUTION"
-        answer = "\n\n\n".join(each for each in (helpers, f"{header(question, language)}\n{marked}") if each)
+        answer = "\n".join(each for each in (helpers, f"{header(question, language)}\n{marked}") if each)
     tests = [
         code(f"{name}-test-{part.name}", _test(question, part, language, graded_by))
         for part in question.parts

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from radiokit.faces.grading.grader import grade
-from radiokit.faces.grading.handout.kernel import GRADED
+from radiokit.faces.grading.handout.kernel import GRADED, submitted
 
 __all__ = ["Plugin"]
 
@@ -24,30 +24,31 @@ class Plugin:
     """An otter plugin; otter gives it the submission's path, its metadata, and what the master says of it."""
 
     def __init__(self, submission_path: str, submission_metadata: Any, plugin_config: dict[str, str]) -> None:
-        self._path, self._config = submission_path, plugin_config
+        self._config = plugin_config
         self._student = _student(submission_metadata)
         self._folder: tempfile.TemporaryDirectory[str] | None = None
         self._report = ""
 
     def before_execution(self, submission: Any) -> Any:
         """Grade the submission, and return it with nothing in it to execute."""
+        self._folder = tempfile.TemporaryDirectory(prefix="radiokit-otter-")
+        cells = [cell for cell in submission.cells if cell.cell_type == "code"]
+        copy = Path(self._folder.name, "submission.ipynb")
+        copy.write_text(submitted(cell.source for cell in cells), encoding="utf-8")
         found = grade(
             self._config["assignment"],
-            self._path,
+            copy,
             student=self._student,
             secret=self._config.get("secret", ""),
             language=self._config["language"],
         )
         self._report = str(found)
-        self._folder = tempfile.TemporaryDirectory(prefix="radiokit-otter-")
         file = Path(self._folder.name, "grade.json")
         file.write_text(json.dumps(found.to_json()), encoding="utf-8")
         os.environ[GRADED] = str(file)
         self._grade = found
-        for cell in submission.cells:
-            if cell.cell_type == "code":
-                cell.source = ""
-                cell.metadata.pop("otter", None)
+        for cell in cells:
+            cell.source = ""
         return submission
 
     def after_grading(self, results: Any) -> None:
