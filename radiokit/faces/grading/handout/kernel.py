@@ -4,8 +4,9 @@ A test cell holds no answers. It hands the source of the cells that were execute
 which radiokit's grader runs the student's code in its sandbox and compares with the references.
 
 What cannot be defended there: a notebook's kernel belongs to the notebook, so a student's code may put
-anything in place of these functions, of the cells' history, or of a cell's result. Otter is spared that by
-``handout.plugin``. With nbgrader, let `radiokit grade` give the marks that count.
+anything in place of these functions, of the cells' history, or of a cell's result. So otter has
+``handout.plugin`` and nbgrader ``handout.graded``, which grade in another process than the kernel; both are
+set up by `radiokit assignment`. Where they are not, as in a student's own notebook, believe no points.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -30,10 +32,12 @@ from radiokit.faces.grading.protocol import plain_text
 from radiokit.faces.grading.tools import without_tools
 from radiokit.facts.errors import RadiokitError, TargetError
 
-__all__ = ["GRADED", "FeedbackError", "kernel_check", "kernel_points", "submitted"]
+__all__ = ["GRADED", "LATER", "FeedbackError", "in_words", "kernel_check", "kernel_points", "submitted"]
 
 GRADED = "RADIOKIT_GRADE"
 """The variable of the environment that names a grade that is already there, where a plugin has graded."""
+LATER = "later"
+"""Its value where the points of a test cell will be put in afterwards, by ``handout.graded``."""
 
 
 class FeedbackError(AssertionError):
@@ -90,19 +94,25 @@ def kernel_points(question: str, *, assignment: str, language: str = "en", secon
     RadiokitError
         When there is no notebook, no such assignment, or nothing can be graded here.
     """
-    if not _is_here(assignment):
-        raise TargetError(tell(language, "elsewhere", question=question))
+    autograded = os.environ.get("NBGRADER_EXECUTION") == "autograde"
+    if autograded and os.environ.get(GRADED) == LATER:
+        return 0.0
     found = _graded(question, assignment, language, seconds)
-    seen = [part for part in found.parts if part.visibility == "visible"]
     earned = found.score
-    if os.environ.get("NBGRADER_EXECUTION") != "autograde":
+    if not autograded:
+        seen = [part for part in found.parts if part.visibility == "visible"]
         most = sum(part.points for part in seen)
         earned = found.points * sum(part.score for part in seen) / most if most else found.points
-    earned = float(round(min(max(earned, 0.0), found.points), 4))
-    lines = [f"{part.title}: {part.text}" for part in seen]
-    points = tell(language, "earned", score=earned, points=found.points)
-    sys.stdout.write("\n  ".join([f"{question}: {points}", *lines]) + "\n")
-    return earned
+        found = replace(found, parts=tuple(seen))
+    sys.stdout.write(in_words(found, language))
+    return float(round(earned, 4))
+
+
+def in_words(found: QuestionGrade, language: str) -> str:
+    """Return what a question earned, and what is said of its visible parts."""
+    points = tell(language, "earned", score=found.score, points=found.points)
+    lines = [f"{part.title}: {part.text}" for part in found.parts if part.visibility == "visible"]
+    return "\n  ".join([f"{found.name}: {points}", *lines]) + "\n"
 
 
 def submitted(sources: Iterable[str]) -> str:
@@ -119,7 +129,7 @@ def _is_here(assignment: str) -> bool:
 def _graded(question: str, assignment: str, language: str, seconds: float) -> QuestionGrade:
     """Return what a question earned, from the grade that is there, or else of what was executed here."""
     done = os.environ.get(GRADED, "")
-    if done:
+    if done and done != LATER:
         return Grade.from_json(json.loads(Path(done).read_text(encoding="utf-8")))[question]
     if not _is_here(assignment):
         raise TargetError(tell(language, "elsewhere", question=question))

@@ -1,6 +1,6 @@
 """Nbgrader: the source notebook of an assignment, from which nbgrader makes a release and grades it.
 
-Its test cells hold no answers; ``handout.kernel`` says what they do, and what a kernel cannot defend.
+Its test cells hold no answers: see ``handout.kernel``. What they earn is found by ``handout.graded``.
 """
 
 from __future__ import annotations
@@ -12,11 +12,35 @@ from typing import Any
 from radiokit.faces.grading.assignment import Assignment
 from radiokit.faces.grading.handout.cells import Cell, code, markdown
 from radiokit.faces.grading.handout.copies import BLANK, header, intro, question_text
+from radiokit.faces.grading.handout.kernel import GRADED, LATER
 from radiokit.faces.grading.handout.solution import INDENT, Solution
 from radiokit.faces.grading.handout.texts import tell
 from radiokit.faces.grading.question import Question
 
 __all__ = ["nbgrader_cells", "nbgrader_config"]
+
+CONFIG = '''\
+"""What radiokit's assignments need of nbgrader."""
+
+import os
+
+from nbgrader.converters.autograde import Autograde
+from nbgrader.preprocessors import Execute
+
+c = get_config()  # noqa: F821 - nbgrader defines it
+
+# A test cell may take as long as the sandbox lets its question take.
+c.Execute.timeout = {timeout}
+
+# What is not written runs, and returns None.
+c.ClearSolutions.code_stub = {{"python": "..."}}
+
+# nbgrader's own process gives the points: what a submission's kernel shows in a test cell does not count.
+os.environ["{variable}"] = "{later}"
+steps = list(Autograde.autograde_preprocessors.default())
+steps.insert(steps.index(Execute) + 1, "radiokit.faces.grading.handout.graded.graded")
+c.Autograde.autograde_preprocessors = steps
+'''
 
 STARTING = 30.0
 """How long radiokit and the sandbox may take to start, and a submission to load [s]."""
@@ -55,12 +79,7 @@ def nbgrader_cells(
 def nbgrader_config(assignment: Assignment) -> str:
     """Return what stands in ``nbgrader_config.py``: time enough for a cell, and blanks that run."""
     most = math.ceil(max(_seconds(question) for question in assignment.questions) + STARTING)
-    return (
-        '"""What radiokit\'s assignments need of nbgrader."""\n\n'
-        "c = get_config()  # noqa: F821 - nbgrader defines it\n\n"
-        f"c.Execute.timeout = {most}\n"
-        'c.ClearSolutions.code_stub = {"python": "..."}\n'
-    )
+    return CONFIG.format(timeout=most, variable=GRADED, later=LATER)
 
 
 def _question(
