@@ -53,7 +53,7 @@ ASSIGNMENT = rk.grading.Assignment(
                 rk.grading.Part(
                     name="hard",
                     judge=rk.grading.Values(
-                        inputs=lambda rng: {"half_angle": rng.uniform(1e-9, 1e-7, 20)}, reference=cone
+                        inputs=lambda rng: {"half_angle": rng.uniform(3e-6, 3e-5, 20)}, reference=cone
                     ),
                     visibility="hidden",
                 ),

@@ -1,4 +1,4 @@
-"""What students and instructors hold: made anew it is the same, it runs, and no solution is in a student's copy."""
+"""What students and instructors hold: it is made anew the same, it runs, and students have no solutions."""
 
 from __future__ import annotations
 

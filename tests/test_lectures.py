@@ -1,4 +1,4 @@
-"""The lectures: every notebook runs from top to bottom, without an error or a word on standard error."""
+"""The lectures and assignments: every notebook runs from top to bottom, without a word on standard error."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ import nbformat
 import pytest
 from nbclient import NotebookClient
 
-LECTURES = sorted((Path(__file__).parent.parent / "lectures").glob("*.ipynb"))
+FOLDER = Path(__file__).parent.parent / "lectures"
+LECTURES = sorted([*FOLDER.glob("*.ipynb"), *FOLDER.glob("assignments/*.ipynb")])
 
 
 @pytest.mark.parametrize("path", LECTURES, ids=lambda path: path.stem)

@@ -7,6 +7,7 @@ import functools
 import io
 import linecache
 import random
+import sys
 import time
 import warnings
 from collections.abc import Callable, Iterator, Mapping
@@ -154,10 +155,10 @@ def _told(error: BaseException) -> str:
 
 def _cells() -> Mapping[str, int]:
     """Return the numbers of a notebook's cells by the names of their files."""
-    try:
-        from IPython import get_ipython
-    except ImportError:
+    if "IPython" not in sys.modules:
         return {}
+    from IPython import get_ipython
+
     shell = get_ipython()
     found = getattr(getattr(shell, "compile", None), "_filename_map", None)
     return found if isinstance(found, dict) else {}

@@ -1,0 +1,134 @@
+"""Nbgrader: what it makes of our notebook, and what it gives for right, wrong and hostile submissions."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import nbformat
+import pytest
+
+import radiokit as rk
+from radiokit.faces.grading.assignment import load_assignment
+from radiokit.faces.grading.handout import kernel
+from radiokit.faces.grading.handout.solution import read_solution
+
+HERE = Path(__file__).parent
+HOMEWORK, SOLUTION = HERE / "homework.py", HERE / "homework_solution.py"
+RIGHT = {
+    "irradiance": """def irradiance(intensity, distance, theta):
+    return intensity * np.cos(theta) / distance**2""",
+    "cone": """def cone(half_angle):
+    return 4 * np.pi * np.sin(half_angle / 2) ** 2""",
+    "helpers": 'import sys, warnings\nsys.stderr.write("a word")\nwarnings.warn("another")',
+}
+HOSTILE = {
+    "irradiance": """def irradiance(intensity, distance, theta):
+    while True:
+        pass""",
+    "cone": """def cone(half_angle):
+    return 2 * np.pi * (1 - np.cos(half_angle))""",
+    "helpers": """import radiokit as rk
+rk.grading.kernel_points = lambda *a, **k: np.float64(3)
+class In(list): pass
+In = In()""",
+}
+
+
+def nbgrader(*words, cwd):
+    """Run the real tool; it finds its helpers and kernel beside this interpreter."""
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    environment = {**os.environ, "PYTHONPATH": str(HERE.parent), "PATH": path}
+    command = [sys.executable, "-W", "ignore", "-m", "nbgrader", *map(str, words)]
+    done = subprocess.run(command, cwd=cwd, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr[-3000:]
+    return done.stdout + done.stderr
+
+
+def cells_by_id(path):
+    cells = nbformat.read(path, as_version=4).cells
+    return {cell.metadata.nbgrader["grade_id"]: cell for cell in cells if "nbgrader" in cell.metadata}
+
+
+@pytest.fixture(scope="module")
+def course(tmp_path_factory):
+    """A course with the release, two submissions, and their grades."""
+    folder = tmp_path_factory.mktemp("course")
+    rk.grading.write_handout(HOMEWORK, nbgrader=folder, solution=SOLUTION)
+    nbgrader("generate_assignment", "homework", cwd=folder)
+    for student, answers in (("right", RIGHT), ("hostile", HOSTILE)):
+        notebook = nbformat.read(folder / "release/homework/homework.ipynb", as_version=4)
+        for cell in notebook.cells:
+            cell.source = answers.get(cell.metadata.get("nbgrader", {}).get("grade_id"), cell.source)
+        place = folder / "submitted" / student / "homework"
+        place.mkdir(parents=True)
+        nbformat.write(notebook, place / "homework.ipynb")
+    nbgrader("autograde", "homework", cwd=folder)
+    nbgrader("export", cwd=folder)
+    return folder
+
+
+def test_the_release_has_no_solutions_and_runs_blank(course):
+    cells = cells_by_id(course / "release/homework/homework.ipynb")
+    text = json.dumps([cell.source for cell in cells.values()])
+    for body in read_solution(SOLUTION, load_assignment(HOMEWORK)).bodies.values():
+        assert not [line for line in body.split("\n") if len(line.strip()) > 5 and line.strip() in text]
+    assert "squared" not in text
+    assert "NotImplementedError" not in text
+    assert cells["cone"].source.endswith("\n    ...")
+    assert cells["cone-test"].metadata.nbgrader["points"] == 3
+    assert not cells["cone-test"].metadata.get("editable", True)
+
+
+def test_each_gets_what_is_earned_and_nothing_that_is_shown_or_forged(course):
+    """Words on standard error cost nothing, digits that are lost cost a part, forging gains nothing."""
+    with (course / "grades.csv").open() as file:
+        scores = {
+            row["student_id"]: (float(row["score"]), float(row["max_score"])) for row in csv.DictReader(file)
+        }
+    assert scores == {"right": (5, 5), "hostile": (1.5, 5)}
+
+
+def test_the_reasons_are_in_the_cells_and_those_of_hidden_parts_are_not(course):
+    cells = cells_by_id(course / "autograded/hostile/homework/homework.ipynb")
+    words, points = cells["irradiance-test"].outputs
+    assert words.text == "irradiance: 0 of 2 points\n  ordinary inputs: irradiance took longer than 1 s\n"
+    assert points.data["text/plain"] == "0.0"
+    words, points = cells["cone-test"].outputs
+    assert words.text == "cone: 1.5 of 3 points\n  ordinary inputs: right\n"
+    assert points.data["text/plain"] == "1.5"
+
+
+def test_validate_tells_a_student_what_is_not_right_yet(course, tmp_path):
+    """In the kernel the cells that were executed are graded, on the visible parts."""
+    told = nbgrader("validate", course / "submitted/right/homework/homework.ipynb", cwd=tmp_path)
+    assert "Success! Your notebook passes all the tests." in told
+
+
+def test_in_a_students_kernel_the_visible_parts_stand_for_all(monkeypatch, capsys):
+    monkeypatch.setattr(kernel, "_executed", lambda: ["import numpy as np", HOSTILE["cone"]])
+    monkeypatch.delenv("NBGRADER_EXECUTION", raising=False)
+    earned = rk.grading.kernel_points("cone", assignment=str(HOMEWORK), language="ru")
+    assert (type(earned), earned) == (float, 3.0)
+    assert capsys.readouterr().out == "cone: баллы: 1.5 из 1.5\n  обычные входы: верно\n"
+    monkeypatch.setenv("NBGRADER_EXECUTION", "autograde")
+    assert rk.grading.kernel_points("cone", assignment=str(HOMEWORK), language="ru") == 1.5
+    monkeypatch.setenv(kernel.GRADED, kernel.LATER)
+    assert rk.grading.kernel_points("cone", assignment=str(HOMEWORK), language="ru") == 0.0
+
+
+def test_a_grader_that_takes_too_long_is_ended(monkeypatch):
+    monkeypatch.setattr(kernel, "_executed", lambda: ["def cone(half_angle): return 1.0"])
+    with pytest.raises(rk.errors.RadiokitError, match=r"took longer than 0\.01 s"):
+        rk.grading.kernel_points("cone", assignment=str(HOMEWORK), seconds=0.01)
+
+
+def test_a_second_config_is_not_written_over_the_first(tmp_path):
+    (tmp_path / "nbgrader_config.py").write_text("c = get_config()\n")
+    written = rk.grading.write_handout(HOMEWORK, nbgrader=tmp_path)
+    assert [path.name for path in written] == ["homework.ipynb"]
+    assert (tmp_path / "nbgrader_config.py").read_text() == "c = get_config()\n"
