@@ -191,7 +191,10 @@ def _graded(question: Question, found: Mapping[str, Finding], review: str, langu
 def _problems(loaded: Result, language: str) -> tuple[str, ...]:
     if not loaded.ok:
         return (say(language, "not-loaded", error=loaded.error),)
-    return tuple(say(language, "problem", **each) for each in loaded.facts.get("problems", ()))
+    return tuple(
+        say(language, "problem" if each["raised"] else "remark", **each)
+        for each in loaded.facts.get("problems", ())
+    )
 
 
 def _absent(
