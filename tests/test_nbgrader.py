@@ -54,10 +54,8 @@ def cells_by_id(path):
     return {cell.metadata.nbgrader["grade_id"]: cell for cell in cells if "nbgrader" in cell.metadata}
 
 
-@pytest.fixture(scope="module")
-def course(tmp_path_factory):
-    """A course with the release, two submissions, and their grades."""
-    folder = tmp_path_factory.mktemp("course")
+def graded_course(folder):
+    """Make a course in a folder: the release, two submissions, and their grades."""
     rk.grading.write_handout(HOMEWORK, nbgrader=folder, solution=SOLUTION)
     nbgrader("generate_assignment", "homework", cwd=folder)
     for student, answers in (("right", RIGHT), ("hostile", HOSTILE)):
@@ -69,11 +67,10 @@ def course(tmp_path_factory):
         nbformat.write(notebook, place / "homework.ipynb")
     nbgrader("autograde", "homework", cwd=folder)
     nbgrader("export", cwd=folder)
-    return folder
 
 
-def test_the_release_has_no_solutions_and_runs_blank(course):
-    cells = cells_by_id(course / "release/homework/homework.ipynb")
+def look_at_the_release(cells):
+    """It has no solutions, and runs blank."""
     text = json.dumps([cell.source for cell in cells.values()])
     for body in read_solution(SOLUTION, load_assignment(HOMEWORK)).bodies.values():
         assert not [line for line in body.split("\n") if len(line.strip()) > 5 and line.strip() in text]
@@ -84,17 +81,8 @@ def test_the_release_has_no_solutions_and_runs_blank(course):
     assert not cells["cone-test"].metadata.get("editable", True)
 
 
-def test_each_gets_what_is_earned_and_nothing_that_is_shown_or_forged(course):
-    """Words on standard error cost nothing, digits that are lost cost a part, forging gains nothing."""
-    with (course / "grades.csv").open() as file:
-        scores = {
-            row["student_id"]: (float(row["score"]), float(row["max_score"])) for row in csv.DictReader(file)
-        }
-    assert scores == {"right": (5, 5), "hostile": (1.5, 5)}
-
-
-def test_the_reasons_are_in_the_cells_and_those_of_hidden_parts_are_not(course):
-    cells = cells_by_id(course / "autograded/hostile/homework/homework.ipynb")
+def look_at_the_reasons(cells):
+    """They are in the test cells, and those of hidden parts are not."""
     words, points = cells["irradiance-test"].outputs
     assert words.text == "irradiance: 0 of 2 points\n  ordinary inputs: irradiance took longer than 1 s\n"
     assert points.data["text/plain"] == "0.0"
@@ -103,9 +91,20 @@ def test_the_reasons_are_in_the_cells_and_those_of_hidden_parts_are_not(course):
     assert points.data["text/plain"] == "1.5"
 
 
-def test_validate_tells_a_student_what_is_not_right_yet(course, tmp_path):
-    """In the kernel the cells that were executed are graded, on the visible parts."""
-    told = nbgrader("validate", course / "submitted/right/homework/homework.ipynb", cwd=tmp_path)
+def test_each_gets_what_is_earned_and_nothing_that_is_shown_or_forged(tmp_path):
+    """Words on standard error cost nothing, digits that are lost cost a part, forging gains nothing.
+
+    One test, as nbgrader takes its time.
+    """
+    graded_course(tmp_path)
+    look_at_the_release(cells_by_id(tmp_path / "release/homework/homework.ipynb"))
+    with (tmp_path / "grades.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    scores = {row["student_id"]: (float(row["score"]), float(row["max_score"])) for row in rows}
+    assert scores == {"right": (5, 5), "hostile": (1.5, 5)}
+    look_at_the_reasons(cells_by_id(tmp_path / "autograded/hostile/homework/homework.ipynb"))
+    # a student asks in the own kernel: there the cells that were executed are graded, on the visible parts
+    told = nbgrader("validate", "submitted/right/homework/homework.ipynb", cwd=tmp_path)
     assert "Success! Your notebook passes all the tests." in told
 
 

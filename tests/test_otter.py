@@ -38,15 +38,11 @@ def otter(*words, cwd):
     return done.stdout + done.stderr
 
 
-@pytest.fixture(scope="module")
-def made(tmp_path_factory):
-    """What `otter assign` makes: it runs the tests on the solutions, and fails if any does."""
-    folder = tmp_path_factory.mktemp("otter")
+def assigned(folder):
+    """Return what `otter assign` makes: it runs the tests on the solutions, and fails if any does."""
     written = rk.grading.write_handout(HOMEWORK, otter=folder, solution=SOLUTION)
-    assert [path.relative_to(folder).as_posix() for path in written] == [
-        "homework.ipynb",
-        "assignment/homework.py",
-    ]
+    names = [path.relative_to(folder).as_posix() for path in written]
+    assert names == ["homework.ipynb", "assignment/homework.py"]
     told = otter("assign", "homework.ipynb", "made", "-v", cwd=folder)
     assert "All autograder tests passed" in told
     return folder / "made"
@@ -59,14 +55,11 @@ def told_of_naive(folder):
     return rk.grading.grade(HOMEWORK, file, questions=["cone"])["cone"].parts[1].text
 
 
-def student_notebook(made):
-    return nbformat.read(made / "student" / "homework.ipynb", as_version=4)
-
-
-def test_the_students_version_has_neither_solutions_nor_hidden_tests_nor_answers(made):
-    files = [path for path in (made / "student").rglob("*") if path.is_file()]
+def look_at_the_student_version(folder):
+    """It has neither solutions nor hidden tests nor answers."""
+    files = [path for path in folder.rglob("*") if path.is_file()]
     assert [path.name for path in files] == ["homework.ipynb"]
-    notebook = student_notebook(made)
+    notebook = nbformat.read(files[0], as_version=4)
     text = json.dumps(notebook, ensure_ascii=False)
     work = load_assignment(HOMEWORK)
     for body in read_solution(SOLUTION, work).bodies.values():
@@ -77,32 +70,39 @@ def test_the_students_version_has_neither_solutions_nor_hidden_tests_nor_answers
     tests = notebook.metadata.otter["tests"]
     assert set(tests) == {"irradiance", "cone"}
     assert all(test.count("kernel_check(") == 1 for test in tests.values())
+    return notebook
 
 
-def test_the_autograder_holds_the_assignment_and_each_part_once(made):
-    (found,) = (made / "autograder").glob("*.zip")
-    with zipfile.ZipFile(found) as file:
-        names = file.namelist()
-        test = file.read("tests/cone.py").decode()
+def look_at_the_autograder(file):
+    """It has the assignment, and each part once."""
+    with zipfile.ZipFile(file) as found:
+        names = found.namelist()
+        test = found.read("tests/cone.py").decode()
     assert "files/assignment/homework.py" in names
     assert test.count("kernel_check(") == 2
     assert test.count("hidden=True") == 1
     assert "points=1.5" in test
 
 
-def test_wrong_and_hostile_answers_cost_their_own_points_alone(made, tmp_path):
-    """One run: a function that never ends, one that loses digits, a forger, and a cell that never ends."""
-    notebook = student_notebook(made)
+def test_wrong_and_hostile_answers_cost_their_own_points_alone(tmp_path):
+    """A function that never ends, one that loses digits, a forger, and a cell that never ends.
+
+    One test, as otter takes its time: what is assigned, and one run.
+    """
+    made = assigned(tmp_path)
+    notebook = look_at_the_student_version(made / "student")
+    (autograder,) = (made / "autograder").glob("*.zip")
+    look_at_the_autograder(autograder)
     for cell in notebook.cells:
         if cell.cell_type == "code" and "def irradiance" in cell.source:
             cell.source = ENDLESS
         elif cell.cell_type == "code" and "def cone" in cell.source:
             cell.source = NAIVE
-    more = [nbformat.v4.new_code_cell(source) for source in (FORGING, TOP_LEVEL)]
-    notebook.cells[1:1] = more
-    nbformat.write(notebook, tmp_path / "homework.ipynb")
-    (autograder,) = (made / "autograder").glob("*.zip")
-    told = otter("run", "homework.ipynb", "-a", autograder, "-o", tmp_path, "--no-logo", cwd=tmp_path)
+    notebook.cells[1:1] = [nbformat.v4.new_code_cell(source) for source in (FORGING, TOP_LEVEL)]
+    handed_in = tmp_path / "theirs" / "homework.ipynb"
+    handed_in.parent.mkdir()
+    nbformat.write(notebook, handed_in)
+    told = otter("run", handed_in, "-a", autograder, "-o", tmp_path, "--no-logo", cwd=tmp_path)
     found = {each["name"]: each for each in json.loads((tmp_path / "results.json").read_text())["tests"]}
     assert (found["irradiance"]["score"], found["irradiance"]["max_score"]) == (0, 2)
     assert (found["cone"]["score"], found["cone"]["max_score"]) == (1.5, 3)
