@@ -98,19 +98,35 @@ def test_every_notebook_is_valid_and_says_all_that_is_asked(language):
             assert f"def {question.signature}:" in text
 
 
-def test_a_students_script_runs_and_every_function_is_blank(capsys):
-    work = load_assignment("radiometry")
-    for language in LANGUAGES:
-        source = script(student_cells(work, language, checked_by="radiometry"))
-        assert source.count("# %%") == source.count("\n\n# %%") + 1
-        space = {"__name__": "theirs"}
-        exec(compile(source, "theirs.py", "exec"), space)
-        shown = capsys.readouterr().out
-        blank = {"en": "not written yet", "ru": "ещё не написана"}[language]
-        assert shown.count(blank) == 2 * len(work.questions)
-        assert all(
-            space[question.name].__doc__ == f"{question.title[language]}." for question in work.questions
-        )
+@pytest.mark.parametrize("name", list_assignments())
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_a_students_script_runs_and_every_function_is_blank(name, language, capsys):
+    work = load_assignment(name)
+    source = script(student_cells(work, language, checked_by=name))
+    assert source.count("# %%") == source.count("\n\n# %%") + 1
+    space = {"__name__": "theirs"}
+    exec(compile(source, "theirs.py", "exec"), space)
+    blank = {"en": "not written yet", "ru": "ещё не написана"}[language]
+    assert capsys.readouterr().out.count(blank) == 2 * len(work.questions)
+    titles = [question.title[language] for question in work.questions]
+    assert [space[question.name].__doc__ for question in work.questions] == [f"{title}." for title in titles]
+
+
+@pytest.mark.parametrize("name", ["intro", "setup", "helpers", "all", "hand", "otter"])
+def test_no_question_is_taken_for_a_cell_of_ours(name):
+    words = {"en": name, "ru": name}
+    judge = rk.grading.Values(inputs=lambda rng: {"x": rng.random(3)}, reference=lambda x: x)
+    parts = (rk.grading.Part(name="ordinary", judge=judge),)
+    question = rk.grading.Question(signature=f"{name}(x)", points=1, title=words, text=words, parts=parts)
+    work = rk.grading.Assignment(name="a", title=words, intro=words, questions=(question,))
+    for cells in (
+        student_cells(work, checked_by="a"),
+        otter_cells(work, graded_by="a"),
+        nbgrader_cells(work, graded_by="a"),
+    ):
+        assert len({cell.id for cell in cells}) == len(cells)
+        marks = [cell.metadata["nbgrader"]["grade_id"] for cell in cells if "nbgrader" in cell.metadata]
+        assert len(set(marks)) == len(marks)
 
 
 def test_an_instructors_copy_has_the_solutions_and_their_helpers():

@@ -9,7 +9,7 @@ import pytest
 from nbclient import NotebookClient
 
 FOLDER = Path(__file__).parent.parent / "lectures"
-LECTURES = sorted([*FOLDER.glob("*.ipynb"), *FOLDER.glob("assignments/*.ipynb")])
+LECTURES = sorted([*FOLDER.glob("*.ipynb"), *FOLDER.glob("assignments/*.ru.ipynb")])
 
 
 @pytest.mark.parametrize("path", LECTURES, ids=lambda path: path.stem)
@@ -32,7 +32,7 @@ def test_the_notebook_runs(path, missing_opengl):
             assert "image/png" in output.data
 
 
-@pytest.mark.parametrize("path", LECTURES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", sorted(FOLDER.rglob("*.ipynb")), ids=lambda path: path.stem)
 def test_the_notebook_is_kept_without_outputs(path):
     notebook = nbformat.read(path, as_version=4)
     assert not [cell for cell in notebook.cells if cell.get("outputs") or cell.get("execution_count")]

@@ -20,17 +20,17 @@ from radiokit.faces.grading.handout.solution import read_solution
 HERE = Path(__file__).parent
 HOMEWORK, SOLUTION = HERE / "homework.py", HERE / "homework_solution.py"
 RIGHT = {
-    "irradiance": """def irradiance(intensity, distance, theta):
+    "irradiance-answer": """def irradiance(intensity, distance, theta):
     return intensity * np.cos(theta) / distance**2""",
-    "cone": """def cone(half_angle):
+    "cone-answer": """def cone(half_angle):
     return 4 * np.pi * np.sin(half_angle / 2) ** 2""",
     "helpers": 'import sys, warnings\nsys.stderr.write("a word")\nwarnings.warn("another")',
 }
 HOSTILE = {
-    "irradiance": """def irradiance(intensity, distance, theta):
+    "irradiance-answer": """def irradiance(intensity, distance, theta):
     while True:
         pass""",
-    "cone": """def cone(half_angle):
+    "cone-answer": """def cone(half_angle):
     return 2 * np.pi * (1 - np.cos(half_angle))""",
     "helpers": """import radiokit as rk
 rk.grading.kernel_points = lambda *a, **k: np.float64(3)
@@ -76,7 +76,7 @@ def look_at_the_release(cells):
         assert not [line for line in body.split("\n") if len(line.strip()) > 5 and line.strip() in text]
     assert "squared" not in text
     assert "NotImplementedError" not in text
-    assert cells["cone"].source.endswith("\n    ...")
+    assert cells["cone-answer"].source.endswith("\n    ...")
     assert cells["cone-test"].metadata.nbgrader["points"] == 3
     assert not cells["cone-test"].metadata.get("editable", True)
 
@@ -109,7 +109,7 @@ def test_each_gets_what_is_earned_and_nothing_that_is_shown_or_forged(tmp_path):
 
 
 def test_in_a_students_kernel_the_visible_parts_stand_for_all(monkeypatch, capsys):
-    monkeypatch.setattr(kernel, "_executed", lambda: ["import numpy as np", HOSTILE["cone"]])
+    monkeypatch.setattr(kernel, "_executed", lambda: ["import numpy as np", HOSTILE["cone-answer"]])
     monkeypatch.delenv("NBGRADER_EXECUTION", raising=False)
     earned = rk.grading.kernel_points("cone", assignment=str(HOMEWORK), language="ru")
     assert (type(earned), earned) == (float, 3.0)

@@ -58,7 +58,7 @@ def _cells(assignment: Assignment, language: str, checked_by: str, solution: Sol
         if checked_by:
             cells.append(code(f"{question.name}-check", f"check({question.name})"))
     if checked_by:
-        cells += [markdown("all-text", tell(language, "all")), code("all", "check.all()")]
+        cells += [markdown("all-title", tell(language, "all")), code("all", "check.all()")]
     return [*cells, markdown("hand-in", tell(language, "hand-in"))]
 
 

@@ -2,6 +2,8 @@
 
 ``nbgrader_config.py``, as `radiokit assignment --nbgrader` writes it, puts it behind nbgrader's ``Execute``.
 It takes the submission from its file and grades it in radiokit's sandbox, far from the points.
+The kernel still runs a submission's other cells as the user who grades, as nbgrader always does: what
+that user may write, a submission may, too.
 """
 
 from __future__ import annotations

@@ -68,7 +68,7 @@ def nbgrader_cells(
     cells = [
         markdown(first.key, first.source, **_metadata("intro")),
         code("setup", "import numpy as np", **_metadata("setup")),
-        markdown("helpers-text", tell(language, "helpers-text"), **_metadata("helpers-text")),
+        markdown("helpers-title", tell(language, "helpers-title"), **_metadata("helpers-title")),
         code("helpers", helpers, **_metadata("helpers", solution=True)),
     ]
     for number, question in enumerate(assignment.questions, start=1):
@@ -94,7 +94,11 @@ def _question(
     test = f'import radiokit as rk\n\nrk.grading.kernel_points("{name}", {listed})'
     return [
         markdown(text.key, text.source, **_metadata(f"{name}-text")),
-        code(f"{name}-answer", f"{header(question, language)}\n{body}", **_metadata(name, solution=True)),
+        code(
+            f"{name}-answer",
+            f"{header(question, language)}\n{body}",
+            **_metadata(f"{name}-answer", solution=True),
+        ),
         code(f"{name}-test", test, **_metadata(f"{name}-test", points=question.points)),
     ]
 

@@ -21,7 +21,10 @@ __all__ = ["Plugin"]
 
 
 class Plugin:
-    """An otter plugin; otter gives it the submission's path, its metadata, and what the master says of it."""
+    """An otter plugin; otter gives it the submission's path, its metadata, and what the master says of it.
+
+    That is ``assignment`` and ``language``; a ``secret`` may be added, which makes inputs unforeseeable.
+    """
 
     def __init__(self, submission_path: str, submission_metadata: Any, plugin_config: dict[str, str]) -> None:
         self._config = plugin_config

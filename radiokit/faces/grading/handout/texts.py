@@ -55,7 +55,7 @@ in this file under its own name. A function that you leave as it is costs its ow
         "ru": "**Экземпляр преподавателя: здесь решения.**",
     },
     "helpers": {"en": "# Imports and functions of your own", "ru": "# Свои функции и импорт"},
-    "helpers-text": {
+    "helpers-title": {
         "en": "## Functions of your own\n\nWhat several questions need goes here.",
         "ru": "## Свои функции\n\nЗдесь место для того, что нужно нескольким вопросам.",
     },
