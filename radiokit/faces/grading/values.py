@@ -199,7 +199,7 @@ def hint_for(suspicion: Any, hints: Mapping[str, Mapping[str, str]], language: s
 def _asked(
     callee: Callee, given: Mapping[str, Array], right: Array, seed: int, allowed: Array
 ) -> tuple[Result, Mode]:
-    """Return the answer to all inputs at once or, if it is none or wrong and another is better, one by one."""
+    """Return the answer to all inputs at once or, if that is none or wrong and it helps, one by one."""
     arrays = list(given.values())
     best = callee.call(*arrays, mode="batch", seed=seed)
     mode: Mode = "batch"
