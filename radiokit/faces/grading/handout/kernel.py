@@ -29,7 +29,6 @@ from radiokit.faces.grading.grades import Grade, QuestionGrade
 from radiokit.faces.grading.handout.cells import code, notebook
 from radiokit.faces.grading.handout.texts import tell
 from radiokit.faces.grading.protocol import plain_text
-from radiokit.faces.grading.tools import without_tools
 from radiokit.facts.errors import RadiokitError, TargetError
 
 __all__ = ["GRADED", "LATER", "FeedbackError", "in_words", "kernel_check", "kernel_points", "submitted"]
@@ -116,10 +115,8 @@ def in_words(found: QuestionGrade, language: str) -> str:
 
 
 def submitted(sources: Iterable[str]) -> str:
-    """Return a notebook of cells for the grader, without what asks for checks."""
-    return notebook(
-        [code(f"cell-{number}", without_tools(source)) for number, source in enumerate(sources, start=1)]
-    )
+    """Return a notebook of cells for the grader."""
+    return notebook([code(f"cell-{number}", source) for number, source in enumerate(sources, start=1)])
 
 
 def _is_here(assignment: str) -> bool:
