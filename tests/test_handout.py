@@ -204,6 +204,16 @@ def test_the_command_writes_and_spares_what_somebody_has_changed(tmp_path, capsy
     assert not mine.read_text().endswith("mine")
 
 
+@pytest.mark.parametrize("form", [".ipynb", ".py"])
+def test_a_copy_that_is_handed_in_as_it_is_has_no_problems(form, tmp_path):
+    """Its checks are not there where it is graded, and are not missed."""
+    (copy,) = rk.grading.write_handout("radiometry", to=tmp_path, forms=[form])
+    question = load_assignment("radiometry").questions[0].name
+    found = rk.grading.grade("radiometry", copy, questions=[question])
+    assert found.problems == ()
+    assert "returned None" in found[question].explanation
+
+
 def test_some_of_the_questions_are_graded_as_all_are(tmp_path):
     file = tmp_path / "theirs.py"
     file.write_text("import numpy as np\ndef cone(half_angle): return 2 * np.pi * (1 - np.cos(half_angle))\n")

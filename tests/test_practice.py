@@ -16,7 +16,8 @@ from radiokit.faces.grading.assignment import load_assignment, student_rng
 from radiokit.faces.grading.here import Here
 from radiokit.faces.grading.practice import SECRET
 
-HOMEWORK = load_assignment(Path(__file__).with_name("homework.py"))
+HOMEWORK_FILE = Path(__file__).with_name("homework.py")
+HOMEWORK = load_assignment(HOMEWORK_FILE)
 
 
 @pytest.fixture
@@ -244,10 +245,10 @@ def test_a_script_shows_text_and_loads_no_notebook(tmp_path):
     file = tmp_path / "theirs.py"
     file.write_text(
         "import sys\nimport radiokit as rk\n"
-        "check = rk.grading.practice('radiometry')\n"
-        "def irradiance(intensity, distance, theta): ...\n"
-        "check(irradiance)\n"
+        f"check = rk.grading.practice({str(HOMEWORK_FILE)!r})\n"
+        "def cone(half_angle): ...\n"
+        "check(cone)\n"
         "assert 'IPython' not in sys.modules and 'scipy' not in sys.modules\n"
     )
     done = subprocess.run([sys.executable, file], capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stdout, done.stderr) == (0, "irradiance\n  · not written yet\n", "")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "cone\n  · not written yet\n", "")

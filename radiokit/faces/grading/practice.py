@@ -161,10 +161,9 @@ def practice(assignment: str | Path | Assignment, *, language: str = "en", stude
         When there is no such assignment, or no such language.
 
     >>> check = practice("radiometry")
-    >>> def irradiance(intensity, distance, theta): ...
-    >>> check(irradiance)
-    irradiance
-      · not written yet
+    >>> check(len)
+    len
+      ✗ no question asks for a function len; asked for: ...
     """
     return Check(load_assignment(assignment), language, student)
 

@@ -13,6 +13,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+from radiokit.faces.grading.command import read_secret
 from radiokit.faces.grading.grader import grade
 from radiokit.faces.grading.handout.kernel import in_words, submitted
 
@@ -33,6 +34,7 @@ def graded(notebook: Any, resources: Any) -> tuple[Any, Any]:
                 assignment,
                 file,
                 student=str(resources["nbgrader"]["student"]),
+                secret=read_secret(None),
                 language=language,
                 questions=[name for _, name in mine],
             )

@@ -14,6 +14,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+from radiokit.faces.grading.command import read_secret
 from radiokit.faces.grading.grader import grade
 from radiokit.faces.grading.handout.kernel import GRADED, submitted
 
@@ -23,7 +24,7 @@ __all__ = ["Plugin"]
 class Plugin:
     """An otter plugin; otter gives it the submission's path, its metadata, and what the master says of it.
 
-    That is ``assignment`` and ``language``; a ``secret`` may be added, which makes inputs unforeseeable.
+    That is ``assignment`` and ``language``. Inputs are unforeseeable where the environment has a secret.
     """
 
     def __init__(self, submission_path: str, submission_metadata: Any, plugin_config: dict[str, str]) -> None:
@@ -42,7 +43,7 @@ class Plugin:
             self._config["assignment"],
             copy,
             student=self._student,
-            secret=self._config.get("secret", ""),
+            secret=read_secret(None),
             language=self._config["language"],
         )
         self._report = str(found)

@@ -40,11 +40,11 @@ def read_solution(path: str | Path, assignment: Assignment) -> Solution:
     >>> from radiokit.faces.grading.assignment import load_assignment
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = Path(folder, "my.py")
-    ...     _ = file.write_text("def irradiance(r): return r")
+    ...     _ = file.write_text("answer = 42")
     ...     read_solution(file, load_assignment("radiometry"))
     Traceback (most recent call last):
         ...
-    radiokit.facts.errors.TargetError: my.py: irradiance has parameters (r), not (intensity, distance, theta)
+    radiokit.facts.errors.TargetError: my.py defines no function ...
     """
     file = Path(path)
     try:
