@@ -36,7 +36,7 @@ ASSIGNMENT = rk.grading.Assignment(
             parts=(
                 rk.grading.Part(name="ordinary", judge=rk.grading.Values(inputs=lamps, reference=irradiance)),
             ),
-            seconds=1.0,
+            seconds=2.0,
         ),
         rk.grading.Question(
             signature="cone(half_angle)",
@@ -58,8 +58,8 @@ ASSIGNMENT = rk.grading.Assignment(
                     visibility="hidden",
                 ),
             ),
-            seconds=1.0,
+            seconds=2.0,
         ),
     ),
-    limits=rk.grading.Limits(seconds=1.0, load_seconds=2.0),
+    limits=rk.grading.Limits(seconds=2.0, load_seconds=6.0),
 )

@@ -106,7 +106,7 @@ def test_wrong_and_hostile_answers_cost_their_own_points_alone(tmp_path):
     found = {each["name"]: each for each in json.loads((tmp_path / "results.json").read_text())["tests"]}
     assert (found["irradiance"]["score"], found["irradiance"]["max_score"]) == (0, 2)
     assert (found["cone"]["score"], found["cone"]["max_score"]) == (1.5, 3)
-    assert "FeedbackError: irradiance took longer than 1 s" in found["irradiance"]["output"]
+    assert "FeedbackError: irradiance took longer than 2 s" in found["irradiance"]["output"]
     assert f"FeedbackError: {told_of_naive(tmp_path)}" in found["cone"]["output"]
     assert "Traceback" not in found["irradiance"]["output"]
     assert "hard" not in found["Public Tests"]["output"]
