@@ -14,7 +14,7 @@ from radiokit.faces.grading.handout.texts import tell
 from radiokit.faces.grading.question import Question
 from radiokit.faces.grading.words import checked_language
 
-__all__ = ["BLANK", "blank", "header", "instructor_cells", "intro", "question_text", "student_cells"]
+__all__ = ["BLANK", "header", "instructor_cells", "intro", "question_text", "student_cells"]
 
 BLANK = f"{INDENT}..."
 
@@ -84,8 +84,3 @@ def header(question: Question, language: str) -> str:
     """Return a function's first lines: its signature and its docstring."""
     title = question.title[language].replace("\\", r"\\").replace('"""', "'''").rstrip('"')
     return f'def {question.signature}:\n{INDENT}"""{title}."""'
-
-
-def blank(question: Question, language: str) -> str:
-    """Return a function that returns None: what the student starts from."""
-    return f"{header(question, language)}\n{BLANK}"

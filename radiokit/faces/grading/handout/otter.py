@@ -45,10 +45,9 @@ def otter_cells(
         intro(assignment, language, checked=False),
         code("setup", "import numpy as np"),
     ]
+    helpers = ""
     if solution is not None and solution.helpers:
         helpers = f"# BEGIN SOLUTION NO PROMPT\n{solution.helpers}\n# END SOLUTION"
-    else:
-        helpers = ""
     for number, question in enumerate(assignment.questions, start=1):
         cells += _question(question, number, language, solution, helpers if number == 1 else "", graded_by)
     return [*cells, markdown("hand-in", tell(language, "hand-in"))]
@@ -107,13 +106,8 @@ def _test(question: Question, part: Part, language: str, graded_by: str) -> str:
             f"points: {question.worth(part)!r}",
             f"hidden: {json.dumps(part.visibility != 'visible')}",
             '""" # END TEST CONFIG',
-            f"def {question.name}_{number_of(question, part)}():",
+            f"def {question.name}_{question.parts.index(part) + 1}():",
             f"{INDENT}import radiokit as rk",
             f'{INDENT}rk.grading.kernel_check("{question.name}", {listed})',
         ]
     )
-
-
-def number_of(question: Question, part: Part) -> int:
-    """Return a part's number, from 1."""
-    return question.parts.index(part) + 1
