@@ -15,6 +15,7 @@ import pytest
 import radiokit as rk
 from radiokit.faces.grading.assignment import load_assignment
 from radiokit.faces.grading.handout import kernel
+from radiokit.faces.grading.handout.nbgrader import CONFIG
 from radiokit.faces.grading.handout.solution import read_solution
 
 HERE = Path(__file__).parent
@@ -126,8 +127,13 @@ def test_a_grader_that_takes_too_long_is_ended(monkeypatch):
         rk.grading.kernel_points("cone", assignment=str(HOMEWORK), seconds=0.01)
 
 
-def test_a_second_config_is_not_written_over_the_first(tmp_path):
-    (tmp_path / "nbgrader_config.py").write_text("c = get_config()\n")
+def test_a_course_that_has_a_configuration_keeps_it_if_it_makes_points_safe(tmp_path):
+    config = tmp_path / "nbgrader_config.py"
+    config.write_text("c = get_config()\n")
+    with pytest.raises(rk.errors.TargetError, match="could give themselves points"):
+        rk.grading.write_handout(HOMEWORK, nbgrader=tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["nbgrader_config.py"]
+    config.write_text(f"{CONFIG}\nc.CourseDirectory.course_id = 'light'\n")
     written = rk.grading.write_handout(HOMEWORK, nbgrader=tmp_path)
     assert [path.name for path in written] == ["homework.ipynb"]
-    assert (tmp_path / "nbgrader_config.py").read_text() == "c = get_config()\n"
+    assert config.read_text().endswith("'light'\n")

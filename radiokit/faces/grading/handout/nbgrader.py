@@ -6,7 +6,6 @@ Its test cells hold no answers: see ``handout.kernel``. What they earn is found 
 from __future__ import annotations
 
 import json
-import math
 from typing import Any
 
 from radiokit.faces.grading.assignment import Assignment
@@ -17,9 +16,12 @@ from radiokit.faces.grading.handout.solution import INDENT, Solution
 from radiokit.faces.grading.handout.texts import tell
 from radiokit.faces.grading.question import Question
 
-__all__ = ["nbgrader_cells", "nbgrader_config"]
+__all__ = ["CONFIG", "STEP", "nbgrader_cells"]
 
-CONFIG = '''\
+STEP = "radiokit.faces.grading.handout.graded.graded"
+"""What nbgrader calls after it has executed a notebook."""
+
+CONFIG = f'''\
 """What radiokit's assignments need of nbgrader."""
 
 import os
@@ -29,18 +31,16 @@ from nbgrader.preprocessors import Execute
 
 c = get_config()  # noqa: F821 - nbgrader defines it
 
-# A test cell may take as long as the sandbox lets its question take.
-c.Execute.timeout = {timeout}
-
 # What is not written runs, and returns None.
 c.ClearSolutions.code_stub = {{"python": "..."}}
 
 # nbgrader's own process gives the points: what a submission's kernel shows in a test cell does not count.
-os.environ["{variable}"] = "{later}"
+os.environ["{GRADED}"] = "{LATER}"
 steps = list(Autograde.autograde_preprocessors.default())
-steps.insert(steps.index(Execute) + 1, "radiokit.faces.grading.handout.graded.graded")
+steps.insert(steps.index(Execute) + 1, "{STEP}")
 c.Autograde.autograde_preprocessors = steps
 '''
+"""The course's ``nbgrader_config.py``."""
 
 STARTING = 30.0
 """How long radiokit and the sandbox may take to start, and a submission to load [s]."""
@@ -74,12 +74,6 @@ def nbgrader_cells(
     for number, question in enumerate(assignment.questions, start=1):
         cells += _question(question, number, language, solution, graded_by)
     return [*cells, markdown("hand-in", tell(language, "hand-in"), **_metadata("hand-in"))]
-
-
-def nbgrader_config(assignment: Assignment) -> str:
-    """Return what stands in ``nbgrader_config.py``: time enough for a cell, and blanks that run."""
-    most = math.ceil(max(_seconds(question) for question in assignment.questions) + STARTING)
-    return CONFIG.format(timeout=most, variable=GRADED, later=LATER)
 
 
 def _question(

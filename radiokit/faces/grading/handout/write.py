@@ -8,7 +8,7 @@ from pathlib import Path
 from radiokit.faces.grading.assignment import Assignment, load_assignment
 from radiokit.faces.grading.handout.cells import Cell, notebook, script
 from radiokit.faces.grading.handout.copies import instructor_cells, student_cells
-from radiokit.faces.grading.handout.nbgrader import nbgrader_cells, nbgrader_config
+from radiokit.faces.grading.handout.nbgrader import CONFIG, STEP, nbgrader_cells
 from radiokit.faces.grading.handout.otter import FOLDER, otter_cells
 from radiokit.faces.grading.handout.solution import Solution, read_solution
 from radiokit.faces.grading.words import checked_language
@@ -47,15 +47,16 @@ def write_handout(
     otter : str or Path, optional
         Folder of the master notebook for ``otter assign``.
     nbgrader : str or Path, optional
-        Folder of an nbgrader course, into ``source/NAME/NAME.ipynb``; its ``nbgrader_config.py`` is written
-        where there is none.
+        Folder of an nbgrader course, for ``source/NAME/NAME.ipynb``. Its ``nbgrader_config.py`` is written
+        where there is none; one that is there must have the lines that make points safe.
     force : bool
         Write over files that differ.
 
     Raises
     ------
     RadiokitError
-        When there is no such assignment, language or solution, or a file is there and differs.
+        When there is no such assignment, language or solution, or a file is there and differs, or a
+        course's configuration lacks what it needs.
     """
     work = load_assignment(assignment)
     for language in languages:
@@ -76,8 +77,14 @@ def write_handout(
         graded_by = work.name if own is None else str(own)
         source = nbgrader_cells(work, languages[0], solution=solved, graded_by=graded_by)
         files[Path(nbgrader, "source", work.name, f"{work.name}.ipynb")] = notebook(source)
-        if not Path(nbgrader, "nbgrader_config.py").exists():
-            files[Path(nbgrader, "nbgrader_config.py")] = nbgrader_config(work)
+        config = Path(nbgrader, "nbgrader_config.py")
+        if not config.exists():
+            files[config] = CONFIG
+        elif STEP not in config.read_text(encoding="utf-8"):
+            raise TargetError(
+                f"{config} is there without {STEP}, so that notebooks could give themselves points; "
+                "in an empty folder the lines that it needs are written"
+            )
     for path, text in files.items():
         if not force and path.exists() and path.read_bytes() != text.encode():
             raise TargetError(f"{path} is there and differs; --force writes over it")
