@@ -14,6 +14,7 @@ from radiokit.faces.console import fail, progress_bar, show_json, show_report, s
 from radiokit.faces.derive import derive
 from radiokit.faces.grading.classroom.command import grade_class
 from radiokit.faces.grading.command import grade
+from radiokit.faces.grading.handout.command import assignment
 from radiokit.faces.lecture import lecture
 from radiokit.faces.models import models
 from radiokit.faces.render.command import render
@@ -206,6 +207,7 @@ def _show_case(each: Any) -> None:
     write(f"  methods: {', '.join(each.methods)}")
 
 
+app.command()(assignment)
 app.command()(bench)
 app.command()(derive)
 app.command()(grade)
