@@ -72,7 +72,7 @@ def test_eight_questions_for_twenty_points():
     for question in ASSIGNMENT.questions:
         seen = {part.name: part.visibility for part in question.parts}
         assert seen.pop("ordinary") == "visible"
-        assert set(seen.values()) == {"hidden"}
+        assert set(seen.values()) == {"after_published"}
         assert set(seen) <= {"hard", "laws"}
 
 

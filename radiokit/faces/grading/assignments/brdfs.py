@@ -57,9 +57,9 @@ def _parts(
     hard = _values(brdf.hard_pairs(**parameters), reference, variants)
     parts: tuple[Part, ...] = (
         Part(name="ordinary", judge=ordinary, weight=2),
-        Part(name="hard", judge=hard, visibility="hidden"),
+        Part(name="hard", judge=hard, visibility="after_published"),
     )
-    return parts if laws is None else (*parts, Part(name="laws", judge=laws, visibility="hidden", title=LAWS))
+    return parts if laws is None else (*parts, Part(name="laws", judge=laws, visibility="after_published", title=LAWS))
 
 
 CONVENTIONS: Words = {
@@ -279,7 +279,7 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
                 Part(
                     name="hard",
                     judge=_values(brdf.hard_values, brdf.asymmetry, wrong.ASYMMETRY),
-                    visibility="hidden",
+                    visibility="after_published",
                 ),
             ),
             hints=hints.HINTS,

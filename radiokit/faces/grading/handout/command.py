@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from radiokit.faces.console import show_json, show_table, write
+from radiokit.facts.errors import TargetError
 
 __all__ = ["assignment"]
 
@@ -26,6 +27,14 @@ def assignment(
     ] = None,
     otter: Annotated[Path | None, typer.Option(help="Folder for otter-grader's master notebook.")] = None,
     nbgrader: Annotated[Path | None, typer.Option(help="Folder of an nbgrader course.")] = None,
+    gradescope: Annotated[Path | None, typer.Option(help="Zip file of an autograder for Gradescope.")] = None,
+    github: Annotated[
+        Path | None, typer.Option(help="Workflow file (.yml) for repositories of GitHub Classroom.")
+    ] = None,
+    secret_file: Annotated[
+        Path | None,
+        typer.Option(help="File with the secret that the autograder takes along; else it makes one."),
+    ] = None,
     force: Annotated[bool, typer.Option("--force", help="Write over files that differ.")] = False,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
@@ -34,25 +43,56 @@ def assignment(
 
     if name is None:
         _list([load_assignment(each) for each in list_assignments()], json)
-    elif to is None and otter is None and nbgrader is None:
+    elif not any((to, otter, nbgrader, gradescope, github)):
         _show(load_assignment(name), (language or ["en"])[0], json)
     else:
-        from radiokit.faces.grading.handout.write import write_handout
+        written: list[Path] = []
+        if to or otter or nbgrader:
+            from radiokit.faces.grading.handout.write import write_handout
 
-        written = write_handout(
-            name,
-            to=to,
-            languages=language or ["en"],
-            forms=(".ipynb", ".py") if form is None else (".ipynb",) if form else (".py",),
-            solution=solution,
-            otter=otter,
-            nbgrader=nbgrader,
-            force=force,
-        )
+            written += write_handout(
+                name,
+                to=to,
+                languages=language or ["en"],
+                forms=(".ipynb", ".py") if form is None else (".ipynb",) if form else (".py",),
+                solution=solution,
+                otter=otter,
+                nbgrader=nbgrader,
+                force=force,
+            )
+        written += _systems(name, gradescope, github, secret_file, (language or ["en"])[0], force)
         if json:
             show_json({"assignment": name, "written": [str(path) for path in written]})
         else:
             write("\n".join(map(str, written)))
+
+
+def _systems(
+    name: str,
+    gradescope: Path | None,
+    github: Path | None,
+    secret_file: Path | None,
+    language: str,
+    force: bool,
+) -> list[Path]:
+    """Write what Gradescope and GitHub Classroom take, for the systems that are asked for."""
+    from radiokit.faces.grading.assignment import load_assignment
+    from radiokit.faces.grading.command import read_secret
+    from radiokit.faces.grading.formats.github import github_workflow
+    from radiokit.faces.grading.formats.gradescope_zip import gradescope_zip
+
+    for path in (gradescope, github):
+        if path is not None and path.exists() and not force:
+            raise TargetError(f"{path} is there; --force writes over it")
+    written = []
+    if gradescope is not None:
+        written.append(gradescope_zip(name, gradescope, secret=read_secret(secret_file), language=language))
+    if github is not None:
+        text = github_workflow(name, f"{load_assignment(name).name}.{language}.ipynb", language=language)
+        github.parent.mkdir(parents=True, exist_ok=True)
+        github.write_text(text, encoding="utf-8")
+        written.append(github)
+    return written
 
 
 def _list(found: list[Any], json: bool) -> None:

@@ -79,7 +79,7 @@ def put_together(
         hints=hints,
         parts=(
             Part(name="ordinary", judge=judge, weight=3),
-            Part(name="hard", judge=strict, weight=1, visibility="hidden"),
+            Part(name="hard", judge=strict, weight=1, visibility="after_published"),
         ),
     )
 
