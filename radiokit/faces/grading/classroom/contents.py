@@ -156,6 +156,6 @@ def _members(archive: _Candidate) -> list[_Candidate]:
         candidate(member)
         for member in members
         if not member.is_dir()
-        and not any(map(skipped, PurePosixPath(member.filename).parts))
+        and not any(skipped(part) for part in PurePosixPath(member.filename).parts if part != "..")
         and PurePosixPath(member.filename).suffix.lower() in SUFFIXES
     ]

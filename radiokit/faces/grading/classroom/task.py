@@ -191,4 +191,5 @@ def _ending_cleanly() -> Iterator[None]:
 
 
 def _end(signum: int, frame: object) -> NoReturn:
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # the pool says so again when the first worker has gone
     raise _EndedError
