@@ -189,7 +189,7 @@ def test_no_key_leads_out_of_the_results_or_to_anothers(tmp_path: Path) -> None:
     assert all(len(os.fsencode(place.name)) < 200 and not place.name.startswith(".") for place in places)
 
 
-def test_two_runs_do_not_share_a_folder(tmp_path: Path) -> None:
+def test_two_runs_do_not_share_a_folder_and_drafts_are_cleared(tmp_path: Path) -> None:
     with (
         Store(tmp_path).opened(),
         pytest.raises(RadiokitError, match="another run"),
@@ -211,7 +211,7 @@ def test_a_task_goes_on_where_its_journal_ends_and_shows_nothing_of_itself(tmp_p
     assignment = hand_in(tmp_path / "class", {})
     journal = tmp_path / "journal"
     order = _order(assignment.read_text())
-    work = Task(order, RIGHT.encode(), ".py", "Zinaida", str(journal))
+    work = Task(order, RIGHT.encode(), ".py", "Zinaida", "mark", str(journal))
     whole = perform(work)
     begun = json.loads(journal.read_text())
     assert [question["name"] for question in begun["questions"]] == ["irradiance"]
@@ -302,7 +302,7 @@ def _arguments(place: Path, out: Path, *more: str) -> list[str | Path]:
 def test_each_gets_what_is_his_due(place: Path) -> None:
     summary = json.loads((place / "one/class.json").read_text())
     assert (summary["entries"], summary["handed_in"], summary["need_review"]) == (8, 7, 0)
-    grades = {key: Grade.from_json((Store(place / "one").read(key) or {})["grade"]) for key in KEYS}
+    grades = {key: Grade.from_json(Store(place / "one").read(key)) for key in KEYS}
     scores = {key: [question.score for question in grade.questions] for key, grade in grades.items()}
     assert scores["Zinaida"] == [2, 1]
     assert scores["Yaroslav"] == [0, 1]
@@ -416,7 +416,7 @@ def test_a_submission_whose_grading_ends_the_worker_is_for_a_person(tmp_path: Pa
     ("change", "message"),
     [
         ({"--assignment": "nothing"}, "unknown assignment 'nothing'"),
-        ({"--secret-file": "nowhere"}, "nowhere cannot be read"),
+        ({"--secret-file": "nowhere"}, "cannot read the secret in nowhere"),
         ({"--language": "de"}, "language = 'de'"),
         ({"--workers": "0"}, "workers = 0"),
         ({"--out": "tiny.py"}, "out = "),

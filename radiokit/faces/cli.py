@@ -12,8 +12,8 @@ import typer
 from radiokit.faces.bench.command import bench
 from radiokit.faces.console import fail, progress_bar, show_json, show_report, show_table, write
 from radiokit.faces.derive import derive
-from radiokit.faces.grading.command import grade
 from radiokit.faces.grading.classroom.command import grade_class
+from radiokit.faces.grading.command import grade
 from radiokit.faces.lecture import lecture
 from radiokit.faces.models import models
 from radiokit.faces.render.command import render
