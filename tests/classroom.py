@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 ASSIGNMENT = """
@@ -67,7 +69,7 @@ CLASS = {
     "Zinaida.py": RIGHT,
     "Yaroslav.py": RIGHT.replace("distance**2", "distance"),
     "Xenia/solution.py": RIGHT.replace("np.pi *", "2 * np.pi *"),
-    "Wsewolod.py": RIGHT.replace("return np.pi * radiance", "while True: pass"),
+    "Wsewolod.py": RIGHT.replace("return np.pi * radiance", "import time\n    while True: time.sleep(1)"),
     "Ulyana.py": RIGHT.replace("return np.pi", "import os; os._exit(3)\n    return np.pi"),
     "Тимофей_77_assignsubmission_file_/tiny.py": RIGHT + "raise ValueError('Тимофей')\n",
     "Serafim/notes.txt": "I was ill.",
@@ -94,6 +96,17 @@ def made(out: Path) -> dict[str, bytes]:
     return {name: found[name] for name in found.keys() - {"timings.json", ".lock"}}
 
 
+def act(order: tuple[str, str]) -> str:
+    """Do what a task's name says to the process that it runs in, and return it."""
+    name, marker = order
+    if name == "kills" or (name == "kills once" and not Path(marker).exists()):
+        Path(marker).touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    if name == "fails":
+        raise ValueError(name)
+    return name
+
+
 def start(*arguments: str | Path, **options: object) -> subprocess.Popen[bytes]:
     """Start ``radiokit`` with arguments, in a process group of its own."""
     code = "from radiokit.faces.cli import main; main()"
@@ -110,21 +123,17 @@ def wait_until(true: Callable[[], bool], seconds: float = 60.0) -> None:
         time.sleep(0.01)
 
 
-def in_session(leader: int) -> list[int]:
-    """Return the processes of a session that are left; sandboxes have their own, but a parent among these."""
-    found = {}
+def left_of(leader: int, folder: Path) -> list[int]:
+    """Return the processes of a session that are left, and those whose command line names a folder.
+
+    Sandboxes have sessions of their own; their folders are temporary ones.
+    """
+    found = []
     for entry in Path("/proc").iterdir():
-        if entry.name.isdigit():
-            try:
-                words = (entry / "stat").read_text().rpartition(")")[2].split()
-            except OSError:
-                continue
-            if words[0] != "Z":
-                found[int(entry.name)] = (int(words[1]), int(words[3]))
-    family = {pid for pid, (_, session) in found.items() if session == leader}
-    grown = True
-    while grown:
-        more = {pid for pid, (parent, _) in found.items() if parent in family} - family
-        family |= more
-        grown = bool(more)
-    return sorted(family - {os.getpid()})
+        if entry.name.isdigit() and int(entry.name) != os.getpid():
+            with suppress(OSError):
+                state, _, _, session, *_ = (entry / "stat").read_text().rpartition(")")[2].split()
+                named = os.fsencode(folder) in (entry / "cmdline").read_bytes()
+                if state != "Z" and (int(session) == leader or named):
+                    found.append(int(entry.name))
+    return found

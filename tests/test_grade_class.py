@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import sys
 import zipfile
@@ -12,7 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from classroom import CLASS, KEYS, NAMES, RIGHT, hand_in, in_session, made, start, wait_until
+from classroom import CLASS, KEYS, NAMES, RIGHT, act, hand_in, left_of, made, start, wait_until
 
 import radiokit as rk
 from radiokit.faces.grading.classroom import contents, task
@@ -249,20 +250,10 @@ def test_what_fails_in_a_task_is_for_a_person_and_is_tried_again(
     assert (found.exit_code, found.graded, found["anna"].score) == (0, 1, 3)
 
 
-def _work(order: tuple[str, str]) -> str:
-    name, marker = order
-    if name == "kills" or (name == "kills once" and not os.path.exists(marker)):  # noqa: PTH110
-        with open(marker, "w"):  # noqa: PTH123
-            os.kill(os.getpid(), signal.SIGKILL)
-    if name == "fails":
-        raise ValueError(name)
-    return name
-
-
 def test_what_breaks_a_pool_harms_no_other_task(tmp_path: Path) -> None:
     names = ["a", "kills", "b", "kills once", "c", "fails", "d"]
     tasks = ((name, (name, str(tmp_path / name))) for name in names)
-    found = list(completed(_work, tasks, workers=2))
+    found = list(completed(act, tasks, workers=2))
     assert sorted(name for name, _ in found) == sorted(names)
     assert dict(found) == {name: None if name in ("kills", "fails") else name for name in names}
 
@@ -325,6 +316,27 @@ def test_each_gets_what_is_his_due(place: Path) -> None:
     assert [row.split(",")[0] for row in rows[1:]] == KEYS
 
 
+def test_results_fit_their_schema_and_pages_are_written_when_asked_for(
+    place: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    import jsonschema
+
+    from radiokit.faces.cli import main
+
+    table = place / "class.csv"
+    with pytest.raises(SystemExit) as ended:
+        main([*map(str, _arguments(place, place / "one", "--html", "--csv", str(table)))])
+    assert ended.value.code == 0
+    printed, errors = capsys.readouterr()
+    assert "nothing had changed" in printed
+    assert not [name for name in NAMES if name in printed + errors]
+    assert table.read_text() == (place / "one/class.csv").read_text()
+    for key in KEYS:
+        jsonschema.validate(Store(place / "one").read(key), rk.grading.grade_schema())
+        assert key in Store(place / "one").page(key).read_text()
+    shutil.rmtree(place / "one/html")
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
 def test_two_workers_write_the_same_bytes_after_any_end_and_no_name_is_said(
     place: Path, tmp_path: Path
@@ -338,7 +350,7 @@ def test_two_workers_write_the_same_bytes_after_any_end_and_no_name_is_said(
     wait_until(lambda: len(list(out.glob("results/*.json"))) >= 3 and bool(list(out.glob("partial/*.json"))))
     os.kill(killed.pid, signal.SIGKILL)
     said = b"".join(killed.communicate())
-    wait_until(lambda: not in_session(killed.pid))  # workers and sandboxes end with it
+    wait_until(lambda: not left_of(killed.pid, tmp_path / "tmp"))  # workers and sandboxes end with it
     assert not list((tmp_path / "tmp").iterdir())
     kept = {path: path.read_bytes() for path in out.glob("results/*.json")}
     assert 3 <= len(kept) < 8
@@ -367,7 +379,7 @@ def test_an_interrupt_ends_a_run_at_once_and_cleanly(place: Path, tmp_path: Path
     os.killpg(run.pid, signal.SIGINT)  # as a terminal does
     printed, errors = run.communicate(timeout=30)
     assert (run.returncode, printed, errors) == (130, b"", b"")
-    wait_until(lambda: not in_session(run.pid))
+    wait_until(lambda: not left_of(run.pid, tmp_path / "tmp"))
     assert not list((tmp_path / "tmp").iterdir())
     assert {name for name in made(out) if name.startswith("results")} < set(made(place / "one"))
 

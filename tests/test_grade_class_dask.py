@@ -12,7 +12,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
-from classroom import KEYS, NAMES, hand_in, in_session, made, wait_until
+from classroom import KEYS, NAMES, hand_in, left_of, made, wait_until
 
 from radiokit.faces.grading.classroom.run import grade_class
 
@@ -25,7 +25,8 @@ class Cluster:
 
     def __init__(self, folder: Path) -> None:
         self.folder, self.processes = folder, ExitStack()
-        self.file = folder / "scheduler.json"
+        self.file, self.temporary = folder / "scheduler.json", folder / "tmp"
+        self.temporary.mkdir()
 
     def start(self, name: str, *words: str) -> subprocess.Popen[bytes]:
         """Start one of them."""
@@ -36,6 +37,7 @@ class Cluster:
                 stdout=log,
                 stderr=log,
                 cwd=self.folder,
+                env={**os.environ, "TMPDIR": str(self.temporary)},
                 start_new_session=True,
             )
         self.processes.callback(self.stop, process)
@@ -49,7 +51,7 @@ class Cluster:
         except subprocess.TimeoutExpired:
             process.kill()
             process.wait()
-        wait_until(lambda: not in_session(process.pid))
+        wait_until(lambda: not left_of(process.pid, self.temporary))
 
     def logs(self) -> str:
         """Return what all of them said."""
