@@ -129,6 +129,16 @@ def test_seeds_repeat_what_is_random(theirs):
     assert np.all(theirs.call("dice", 1.0).values[0] != theirs.call("dice", 1.0).values[0])
 
 
+def test_random_numbers_of_loading_repeat(tmp_path):
+    path = tmp_path / "caf\udce9.py"  # a name that is no text
+    path.write_text("import random, numpy as np\nx = random.random(), np.random.rand()\ndef f(): return x")
+    found = []
+    for _ in range(2):
+        with Sandbox(path) as sandbox:
+            found.append(sandbox.call("f").values[0])
+    np.testing.assert_array_equal(*found)
+
+
 def test_calls_share_a_time(theirs):
     with theirs.within(0.25):
         assert theirs.call("sleeps", 1.0).ok

@@ -199,7 +199,7 @@ def _show_case(each: Any) -> None:
 app.command()(bench)
 app.command()(derive)
 app.command()(grade)
-app.command()(grade_class)
+app.command("grade-class")(grade_class)
 app.command()(lecture)
 app.command()(models)
 app.command(context_settings=_OPEN)(render)

@@ -45,23 +45,26 @@ def grade(
 
     Exit codes: 0 full marks, 1 not full marks, 2 bad usage or input, 3 incomplete or a person should look.
     """
-    from radiokit.faces.grading.assignment import load_assignment
+    from radiokit.faces.grading.assignment import assignment_from_source, assignment_source
     from radiokit.faces.grading.formats.text import to_rich, to_text
     from radiokit.faces.grading.formats.writing import FORMATS, json_text, output, write_file
     from radiokit.faces.grading.grader import grade as graded
-    from radiokit.faces.grading.record import continued, fingerprint, record
+    from radiokit.faces.grading.record import continued, mark_of, record
     from radiokit.faces.grading.unfinished import nothing_yet, with_pending
     from radiokit.faces.grading.words import checked_language
 
     files = [output(target) for target in out or ()]
     checked_language(language)
-    work = load_assignment(assignment)
+    if not student.isprintable():
+        raise ParameterError("student", student, "of printable letters")
+    source, name = assignment_source(assignment)
+    work = assignment_from_source(source, name)
     if submission.suffix not in (".py", ".ipynb"):
         raise ParameterError("submission", str(submission), "a script (.py) or a notebook (.ipynb)")
     if not submission.is_file():
         raise TargetError(f"no such file: {submission}")
     secret = read_secret(secret_file)
-    mark = fingerprint(assignment, submission, student=student, secret=secret, language=language)
+    mark = mark_of(source, submission, student=student, secret=secret, language=language)
     candidates = (continued(each.path, mark) for each in files if each.format == "json")
     earlier = next((each for each in candidates if each is not None), None)
 

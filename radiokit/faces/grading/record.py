@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import hashlib
-import hmac
 import json
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
 import radiokit
-from radiokit.faces.grading.assignment import FOLDER
+from radiokit.faces.grading.classroom.fingerprint import code_digest, fingerprint, secret_digest
 from radiokit.faces.grading.grades import Grade
 from radiokit.facts.errors import TargetError
 
-__all__ = ["continued", "fingerprint", "grade_schema", "record"]
+__all__ = ["continued", "grade_schema", "mark_of", "record"]
 
 
 def grade_schema() -> dict[str, Any]:
@@ -28,31 +26,31 @@ def grade_schema() -> dict[str, Any]:
     return result
 
 
-def fingerprint(
-    assignment: str | Path,
-    submission: str | Path,
-    *,
-    student: str = "",
-    secret: str = "",
-    language: str = "en",
+def mark_of(
+    source: str, submission: Path, *, student: str = "", secret: str = "", language: str = "en"
 ) -> str:
-    """Return a text that is another for another submission, assignment, student, secret, language or version.
-
-    It does not tell the secret.
+    """Return the digest of what a grade depends on; it is slow to find the secret from it.
 
     Raises
     ------
     TargetError
-        When a file cannot be read.
+        When the submission cannot be read.
     """
-    path = Path(assignment)
-    work = path if path.suffix == ".py" else FOLDER / f"{assignment}.py"
-    parts = [radiokit.__version__, student, language, str(assignment), Path(submission).name]
     try:
-        parts += [hashlib.sha256(file.read_bytes()).hexdigest() for file in (work, Path(submission))]
+        content = submission.read_bytes()
     except OSError as error:
-        raise TargetError(f"cannot read {error.filename}: {error.strerror}") from error
-    return hmac.new(secret.encode(), json.dumps(parts).encode(), "sha256").hexdigest()
+        raise TargetError(f"cannot read {submission}: {error.strerror}") from error
+    return fingerprint(
+        content,
+        suffix=submission.suffix,
+        source=source,
+        key="",
+        student=student,
+        secret=secret_digest(secret),
+        language=language,
+        limits=None,
+        code=code_digest(),
+    )
 
 
 def record(grade: Grade, mark: str) -> dict[str, Any]:

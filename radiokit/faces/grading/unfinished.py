@@ -13,7 +13,7 @@ __all__ = ["is_pending", "no_submission", "nothing_yet", "with_pending"]
 
 
 def nothing_yet(assignment: Assignment, *, student: str = "", language: str = "en") -> Grade:
-    """Return the grade before anything is graded: no points, and not complete.
+    """Return the grade before anything is graded, without questions.
 
     >>> from radiokit.faces.grading.assignment import load_assignment
     >>> grade = nothing_yet(load_assignment("radiometry"))
@@ -21,7 +21,7 @@ def nothing_yet(assignment: Assignment, *, student: str = "", language: str = "e
     (0, False)
     """
     checked_language(language)
-    grade = Grade(
+    return Grade(
         assignment=assignment.name,
         title=assignment.title[language],
         student=student,
@@ -29,7 +29,6 @@ def nothing_yet(assignment: Assignment, *, student: str = "", language: str = "e
         questions=(),
         complete=False,
     )
-    return with_pending(grade, assignment)
 
 
 def with_pending(grade: Grade, assignment: Assignment) -> Grade:
@@ -47,7 +46,7 @@ def no_submission(assignment: Assignment, error: str, *, student: str = "", lang
     """Return the grade of work that is not there: no points, complete, and ``error`` says what was found."""
     text = say(checked_language(language), "no-submission", error=error)
     grade = nothing_yet(assignment, student=student, language=language)
-    questions = tuple(_without_points(each, text, language) for each in assignment.questions)
+    questions = tuple(_without_points(question, text, language) for question in assignment.questions)
     return replace(grade, questions=questions, problems=(text,), complete=True)
 
 

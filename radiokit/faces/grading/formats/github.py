@@ -1,7 +1,8 @@
 """GitHub Classroom: a grade as its autograding reporter reads it, and the workflow that makes one.
 
-The format is that of the runners whose results https://github.com/classroom-resources/autograding-grading-reporter
-adds up: JSON in base64, in the environment variable ``RUNNER_RESULTS``.
+The format is that of the runners whose results the reporter adds up: JSON in base64, in the environment
+variable ``RUNNER_RESULTS``, see https://github.com/classroom-resources/autograding-grading-reporter.
+GitHub has ended Classroom itself; the reporter is an action for any repository.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import re
 from typing import Any
 
 import radiokit
-from radiokit.faces.grading.formats.shown import line_of
+from radiokit.faces.grading.formats.shown import line_of, plain
 from radiokit.faces.grading.grades import Grade
 from radiokit.faces.grading.words import checked_language
 from radiokit.facts.errors import ParameterError
@@ -43,7 +44,7 @@ jobs:
         with:
           python-version: "{python}"
       - name: Install radiokit
-        run: python -m pip install {install}
+        run: python -m pip install "{install}"
       - name: Grade
         id: radiokit
         env:
@@ -74,6 +75,7 @@ def to_github(grade: Grade, *, reveal: bool = False) -> dict[str, Any]:
     reveal : bool
         Whether what was found about hidden parts is told.
     """
+    grade = plain(grade)
     tests = []
     for question in grade.questions:
         for part in question.parts:

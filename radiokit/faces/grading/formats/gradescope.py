@@ -9,7 +9,7 @@ from typing import Any
 
 import radiokit
 from radiokit.faces.grading.formats.phrases import phrase
-from radiokit.faces.grading.formats.shown import notes_of
+from radiokit.faces.grading.formats.shown import notes_of, plain
 from radiokit.faces.grading.grades import Grade, PartGrade, QuestionGrade
 
 __all__ = ["to_gradescope"]
@@ -18,9 +18,10 @@ __all__ = ["to_gradescope"]
 def to_gradescope(grade: Grade) -> dict[str, Any]:
     """Return a grade as the content of Gradescope's ``results.json``.
 
-    Each part of a question is a test with its own visibility, which Gradescope enforces. All is plain text,
-    that Gradescope escapes. What the autograder prints is shown to instructors alone. The time is left out,
-    so that the same submission gives the same file.
+    Each part of a question is a test with its own visibility, which Gradescope enforces: it shows students
+    no total while some parts are still to be shown. All is plain text, that Gradescope escapes. What the
+    autograder prints is shown to instructors alone. The time is left out, so that the same submission gives
+    the same file.
 
     Parameters
     ----------
@@ -39,6 +40,7 @@ def to_gradescope(grade: Grade) -> dict[str, Any]:
     >>> test["name"], test["score"], test["max_score"], test["visibility"], test["status"]
     ('f: ordinary inputs', 1.0, 2.0, 'hidden', 'failed')
     """
+    grade = plain(grade)
     result: dict[str, Any] = {
         "visibility": "visible",
         "stdout_visibility": "hidden",

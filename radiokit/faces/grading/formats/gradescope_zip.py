@@ -6,11 +6,11 @@ import re
 import secrets
 import sys
 import zipfile
-from importlib.metadata import PackageNotFoundError, distribution
+from importlib.metadata import PackageNotFoundError, distribution, version
 from pathlib import Path
 
 import radiokit
-from radiokit.faces.grading.assignment import Assignment, load_assignment
+from radiokit.faces.grading.assignment import Assignment, assignment_from_source, assignment_source
 from radiokit.faces.grading.words import checked_language
 from radiokit.facts.errors import ParameterError, TargetError
 
@@ -37,7 +37,8 @@ uv=$base/uv/bin/uv
 rm -rf "$base/uv" "$base/cache"
 chmod -R a+rX "$base/venv"
 if [ -d "$base/python" ]; then chmod -R a+rX "$base/python"; fi
-PYTHONPATH=$here/package "$base/venv/bin/python" -B -m radiokit.faces.cli grade --help >/dev/null
+"$base/venv/bin/python" -m compileall -q "$here/package"
+PYTHONPATH=$here/package "$base/venv/bin/python" -m radiokit.faces.grading.autograder --check
 """
 
 _RUN = """\
@@ -51,7 +52,7 @@ if [ -e "$base/submission_metadata.json" ]; then chmod go= "$base/submission_met
 cd "$base"
 export PYTHONPATH=$base/source/package
 exec "${{AUTOGRADER_PYTHON:-$base/venv/bin/python}}" -B -m radiokit.faces.grading.autograder \\
-    "$base" {assignment} {language}
+    "$base" {language}
 """
 
 _DATE = (1980, 1, 1, 0, 0, 0)
@@ -127,18 +128,18 @@ def gradescope_zip(
         raise ParameterError(
             "assignment", assignment.name, "its name or its file, which the zip file takes along"
         )
-    load_assignment(assignment)
-    own = Path(assignment)
-    target = "source/assignment.py" if own.suffix == ".py" else str(assignment)
+    source, name = assignment_source(assignment)
+    assignment_from_source(source, name)
     python = f"{sys.version_info.major}.{sys.version_info.minor}"
     files: dict[str, tuple[bytes, int]] = {
         "setup.sh": (_SETUP.format(python=python).encode(), 0o755),
-        "run_autograder": (_RUN.format(assignment=target, language=language).encode(), 0o755),
+        "run_autograder": (_RUN.format(language=language).encode(), 0o755),
         "requirements.txt": ("\n".join(pinned_requirements()).encode() + b"\n", 0o644),
+        "assignment.py": (source.encode(), 0o600),
         "secret.txt": ((secret or secrets.token_hex(32)).encode() + b"\n", 0o600),
     }
-    if own.suffix == ".py":
-        files["assignment.py"] = (own.read_bytes(), 0o600)
+    folder = f"package/radiokit-{version('radiokit')}.dist-info"
+    files[f"{folder}/METADATA"] = ((distribution("radiokit").read_text("METADATA") or "").encode(), 0o644)
     root = Path(radiokit.__file__).parent
     for path in sorted(root.rglob("*")):
         if path.is_file() and "__pycache__" not in path.parts:

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from xml.etree import ElementTree
 
-from radiokit.faces.grading.formats.shown import line_of, notes_of, number
+from radiokit.faces.grading.formats.shown import line_of, notes_of, number, plain
 from radiokit.faces.grading.grades import Grade
 
 __all__ = ["to_junit"]
-
-_NOT_IN_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def to_junit(grade: Grade, *, reveal: bool = False) -> str:
@@ -25,10 +22,11 @@ def to_junit(grade: Grade, *, reveal: bool = False) -> str:
     reveal : bool
         Whether what was found about hidden parts is told.
     """
-    root = ElementTree.Element("testsuites", name=_clean(grade.title))
+    grade = plain(grade)
+    root = ElementTree.Element("testsuites", name=grade.title)
     totals = dict.fromkeys(("tests", "failures", "errors", "skipped"), 0)
     for question in grade.questions:
-        suite = ElementTree.SubElement(root, "testsuite", name=_clean(question.name))
+        suite = ElementTree.SubElement(root, "testsuite", name=question.name)
         _properties(suite, {"title": question.title, "score": question.score, "points": question.points})
         counts = dict.fromkeys(totals, 0)
         for part in question.parts:
@@ -36,8 +34,8 @@ def to_junit(grade: Grade, *, reveal: bool = False) -> str:
             case = ElementTree.SubElement(
                 suite,
                 "testcase",
-                classname=_clean(f"{grade.assignment}.{question.name}"),
-                name=_clean(line.title),
+                classname=f"{grade.assignment}.{question.name}",
+                name=line.title,
             )
             values: dict[str, str | float] = {
                 "score": part.score,
@@ -49,13 +47,13 @@ def to_junit(grade: Grade, *, reveal: bool = False) -> str:
             counts["tests"] += 1
             if line.standing == "pending":
                 counts["skipped"] += 1
-                ElementTree.SubElement(case, "skipped", message=_clean(line.text))
+                ElementTree.SubElement(case, "skipped", message=line.text)
             elif line.standing != "full":
                 kind = "error" if question.review else "failure"
                 counts[f"{kind}s"] += 1
-                message = _clean(f"{line.score} / {line.points}: {line.text}")
+                message = f"{line.score} / {line.points}: {line.text}"
                 element = ElementTree.SubElement(case, kind, message=message, type=line.diagnosis or "points")
-                element.text = _clean("\n".join([line.text, *notes_of(grade, question)]))
+                element.text = "\n".join([line.text, *notes_of(grade, question)])
         for name, cases in counts.items():
             suite.set(name, str(cases))
             totals[name] += cases
@@ -68,10 +66,5 @@ def to_junit(grade: Grade, *, reveal: bool = False) -> str:
 def _properties(element: ElementTree.Element, values: dict[str, str | float]) -> None:
     parent = ElementTree.SubElement(element, "properties")
     for name, value in values.items():
-        text = _clean(value) if isinstance(value, str) else number(value)
+        text = value if isinstance(value, str) else number(value)
         ElementTree.SubElement(parent, "property", name=name, value=text)
-
-
-def _clean(text: str) -> str:
-    """Replace what XML cannot hold, even escaped."""
-    return _NOT_IN_XML.sub("\ufffd", text)

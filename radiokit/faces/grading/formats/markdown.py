@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from radiokit.faces.grading.formats.phrases import phrase
-from radiokit.faces.grading.formats.shown import line_of, notes_of, number
+from radiokit.faces.grading.formats.shown import line_of, notes_of, number, plain
 from radiokit.faces.grading.grades import Grade
 
 __all__ = ["to_markdown"]
@@ -23,6 +23,7 @@ def to_markdown(grade: Grade, *, reveal: bool = False) -> str:
     reveal : bool
         Whether what was found about hidden parts is told.
     """
+    grade = plain(grade)
     language = grade.language
     lines = [f"# {_escape(grade.title)}: {number(grade.score)} / {number(grade.points)}", ""]
     if grade.student:

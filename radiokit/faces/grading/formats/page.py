@@ -6,7 +6,7 @@ from html import escape
 
 import radiokit
 from radiokit.faces.grading.formats.phrases import phrase, protection
-from radiokit.faces.grading.formats.shown import line_of, notes_of, number
+from radiokit.faces.grading.formats.shown import line_of, notes_of, number, plain
 from radiokit.faces.grading.grades import Grade, QuestionGrade
 
 __all__ = ["to_html"]
@@ -60,6 +60,7 @@ def to_html(grade: Grade, *, reveal: bool = False) -> str:
     reveal : bool
         Whether what was found about hidden parts is told.
     """
+    grade = plain(grade)
     language, title = grade.language, escape(grade.title)
     score = f"{number(grade.score)} / {number(grade.points)}"
     share = 100 * grade.score / grade.points if grade.points else 0.0

@@ -6,7 +6,7 @@ import csv
 import io
 from collections.abc import Iterable
 
-from radiokit.faces.grading.formats.shown import number
+from radiokit.faces.grading.formats.shown import number, plain
 from radiokit.faces.grading.grades import Grade
 from radiokit.facts.errors import ParameterError
 
@@ -43,7 +43,7 @@ def to_csv(grades: Iterable[Grade], *, excel: str = "") -> str:
     if excel not in _DIALECTS:
         raise ParameterError("excel", excel, "'en', 'ru' or ''")
     mark, delimiter, point = _DIALECTS[excel]
-    rows = sorted(grades, key=lambda grade: grade.student)
+    rows = sorted(map(plain, grades), key=lambda grade: grade.student)
     assignments = sorted({grade.assignment for grade in rows})
     if len(assignments) > 1:
         raise ParameterError("grades", ", ".join(assignments), "grades of one assignment")
@@ -69,5 +69,4 @@ def _note(grade: Grade) -> str:
 
 def _text(text: str) -> str:
     """Return a text cell that no spreadsheet takes for a formula."""
-    dangerous = text.lstrip().startswith(("=", "+", "-", "@")) or text.startswith(("\t", "\r", "\n"))
-    return f"'{text}" if dangerous else text
+    return f"'{text}" if text.startswith(("=", "+", "-", "@")) else text

@@ -6,7 +6,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from radiokit.faces.grading.formats.phrases import phrase
-from radiokit.faces.grading.formats.shown import line_of, notes_of, number
+from radiokit.faces.grading.formats.shown import line_of, notes_of, number, plain
 from radiokit.faces.grading.grades import Grade
 
 __all__ = ["to_rich", "to_text"]
@@ -24,6 +24,7 @@ def to_text(grade: Grade, *, reveal: bool = False) -> str:
     reveal : bool
         Whether what was found about hidden parts is told.
     """
+    grade = plain(grade)
     lines = [f"{grade.title}: {number(grade.score)} / {number(grade.points)}"]
     lines += [f"  {note}" for note in notes_of(grade)]
     for question in grade.questions:
@@ -39,6 +40,7 @@ def to_text(grade: Grade, *, reveal: bool = False) -> str:
 
 def to_rich(grade: Grade, *, reveal: bool = False) -> Table:
     """Return a grade as a table of Rich's, with colours."""
+    grade = plain(grade)
     table = Table(
         title=escape(f"{grade.title}: {number(grade.score)} / {number(grade.points)}"), title_justify="left"
     )

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from radiokit.faces.grading.classroom.task import write_whole
 from radiokit.faces.grading.formats.github import to_github_output
 from radiokit.faces.grading.formats.gradescope import to_gradescope
 from radiokit.faces.grading.formats.junit import to_junit
@@ -97,15 +97,7 @@ def write_file(path: Path, text: str) -> None:
     ParameterError
         When it cannot be written.
     """
-    draft = path.with_name(f".{path.name}.{os.getpid()}")
     try:
-        try:
-            with draft.open("w", encoding="utf-8", newline="") as file:
-                file.write(text)
-                file.flush()
-                os.fsync(file.fileno())
-            draft.replace(path)
-        finally:
-            draft.unlink(missing_ok=True)
+        write_whole(path, text)
     except OSError as error:
         raise ParameterError("out", str(path), f"a file that can be written ({error.strerror})") from error
