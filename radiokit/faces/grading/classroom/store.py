@@ -11,6 +11,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+from radiokit.faces.grading.whole import clear_drafts
 from radiokit.facts.errors import ParameterError, RadiokitError
 
 __all__ = ["Store"]
@@ -53,8 +54,7 @@ class Store:
         with lock:
             self._lock(lock.fileno())
             for place in (self.folder, self.results, self.pages):
-                for draft in place.glob(".*.????????"):  # of a run that was killed while it wrote
-                    draft.unlink(missing_ok=True)
+                clear_drafts(place)
             yield self
 
     def _lock(self, descriptor: int) -> None:

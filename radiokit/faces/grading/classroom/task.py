@@ -23,7 +23,7 @@ from radiokit.faces.grading.grades import Grade
 from radiokit.faces.grading.limits import Limits
 from radiokit.faces.grading.protocol import plain_text
 from radiokit.faces.grading.record import continued, record
-from radiokit.faces.grading.unfinished import nothing_yet
+from radiokit.faces.grading.unfinished import nothing_yet, with_pending
 from radiokit.facts.errors import RadiokitError
 
 __all__ = ["Done", "Order", "Task", "assignment_of", "failed", "perform"]
@@ -120,7 +120,8 @@ def perform(task: Task) -> Done:
 def failed(order: Order, student: str, key: str, **values: Any) -> Done:
     """Return the grade of what could not be graded: no points so far, and why a person should look."""
     text = reason(order.language, key, **values)
-    blank = nothing_yet(assignment_of(order), student=student, language=order.language)
+    work = assignment_of(order)
+    blank = with_pending(nothing_yet(work, student=student, language=order.language), work)
     questions = tuple(replace(question, review=text) for question in blank.questions)
     return Done(replace(blank, questions=questions, problems=(text,), complete=True).to_json())
 
