@@ -74,7 +74,7 @@ def open_executor(workers: int | None = None, scheduler: str | None = None) -> I
     """Open the executor for a long run, and close it when the block ends.
 
     Results must not depend on the choice: hand every task its own seed, and keep the order of the results,
-    as ``Executor.map`` does.
+    as ``Executor.map`` does. An interrupt ends local processes at once, and they do not outlive this one.
 
     Parameters
     ----------

@@ -31,7 +31,12 @@ def grade_class(
         Path | None,
         typer.Option(help="File with the text that makes inputs unforeseeable; else $RADIOKIT_SECRET."),
     ] = None,
-    roster: Annotated[Path | None, typer.Option(help="CSV file with the columns entry and student.")] = None,
+    roster: Annotated[
+        Path | None,
+        typer.Option(
+            help="CSV file with the columns entry and student; else the entry's name counts."
+        ),
+    ] = None,
     language: Annotated[str, typer.Option(help="en or ru.")] = "en",
     again: Annotated[bool, typer.Option("--again", help="Grade all again.")] = False,
     html: Annotated[bool, typer.Option("--html", help="Also write a page for each student.")] = False,
