@@ -33,9 +33,7 @@ def grade_class(
     ] = None,
     roster: Annotated[
         Path | None,
-        typer.Option(
-            help="CSV file with the columns entry and student; else the entry's name counts."
-        ),
+        typer.Option(help="CSV file with the columns entry and student; else the entry's name counts."),
     ] = None,
     language: Annotated[str, typer.Option(help="en or ru.")] = "en",
     again: Annotated[bool, typer.Option("--again", help="Grade all again.")] = False,
