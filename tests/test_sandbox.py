@@ -94,6 +94,7 @@ def floods(x):
 def exits(x): os._exit(3)
 def leaves(x): sys.exit(5)
 def kills_itself(x): os.kill(os.getpid(), signal.SIGKILL); time.sleep(20)
+def stops_itself(x): os.kill(os.getpid(), signal.SIGSTOP)
 def kills_its_launcher(x):
     os.kill(os.getppid(), signal.SIGKILL); time.sleep(0.05); return x
 def patches(x):
@@ -248,6 +249,7 @@ def test_what_a_remote_function_does_wrong_is_said_as_of_a_local_one(honest):
         ("memory", r"raised (_Array)?MemoryError: Unable to allocate"),
         ("big_file", r"raised OSError: \[Errno 27\] File too large"),
         ("floods", "printed more than 262144 bytes"),
+        ("stops_itself", r"took longer than 0\.3 s"),
         ("exits", "ended its process with exit code 3"),
         ("leaves", "raised SystemExit: 5"),
         ("kills_itself", "was ended by SIGKILL"),

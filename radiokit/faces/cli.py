@@ -78,6 +78,9 @@ def check(
     law: Annotated[list[str] | None, typer.Option(help="Only this law; may be repeated.")] = None,
     tolerance: Annotated[float, typer.Option(help="How far beyond a limit a value may lie.")] = 1e-9,
     seconds: Annotated[float, typer.Option(help="Time aimed at for a slow function.")] = 60.0,
+    evaluations: Annotated[
+        int | None, typer.Option(help="Evaluations aimed at, in place of a time: the same on any machine.")
+    ] = None,
     isolated: Annotated[bool, typer.Option("--isolated", help="Run file.py:function in a sandbox.")] = False,
 ) -> None:
     """Check a BSDF for reciprocity, energy conservation and more; its parameters go as --NAME VALUE."""
@@ -95,7 +98,14 @@ def check(
         else:
             model = _load(target, context)
         progress = stack.enter_context(progress_bar("checking", not json))
-        report = judge(model, laws=law or LAWS, tolerance=tolerance, seconds=seconds, progress=progress)
+        report = judge(
+            model,
+            laws=law or LAWS,
+            tolerance=tolerance,
+            seconds=seconds,
+            evaluations=evaluations,
+            progress=progress,
+        )
     if json:
         show_json(report.to_json())
     else:

@@ -21,6 +21,7 @@ from .grader import grade as grade
 from .grades import Grade as Grade
 from .grades import PartGrade as PartGrade
 from .grades import QuestionGrade as QuestionGrade
+from .laws import Laws as Laws
 from .limits import Limits as Limits
 from .question import Part as Part
 from .question import Question as Question

@@ -11,7 +11,7 @@ import os
 import signal
 import time
 
-__all__ = ["PERIOD", "clear", "ended", "tree", "used", "watchable"]
+__all__ = ["PERIOD", "bury", "clear", "ended", "tree", "used", "watchable"]
 
 PERIOD = 0.05
 """How long nobody looks [s]."""
@@ -76,6 +76,15 @@ def watchable(proc: int) -> bool:
         return used(proc, [os.getpid()], 1 << 62) > 0
     except (OSError, ValueError):
         return False
+
+
+def bury(child: int) -> None:
+    """Bury what has ended of our children but one: orphans, if we reap them."""
+    while hasattr(os, "waitid"):
+        state = os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOHANG | os.WNOWAIT)
+        if state is None or state.si_pid == child:
+            return
+        os.waitpid(state.si_pid, 0)
 
 
 def ended(child: int) -> int | None:

@@ -23,16 +23,19 @@ import time
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from typing import Any, NoReturn
 
 __all__: list[str] = []
 
 PARTS = ("descendants", "landlock", "namespaces", "rights", "seccomp")
 DEVICES = ("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom")
+SPARE = 4
+"""How many processes more than allowed are seen as too many: where the kernel counts, there are none."""
 FAILED = 97
 """Exit code when the walls that were asked for cannot be built here."""
-TOO_MUCH = -1
-"""Stands for an exit code when more memory is used than allowed."""
+TOO_MUCH, TOO_MANY = -signal.SIGUSR1, -signal.SIGUSR2
+"""How the launcher ends where the child's processes use too much memory, or are too many."""
 
 
 def _beside(name: str) -> Any:
@@ -108,11 +111,11 @@ def _wait(child: int) -> int:
             return code if code >= 0 else 128 - code
 
 
-def _watch(child: int, too_much: Any) -> tuple[int, bool]:
+def _watch(child: int, excess: Callable[[], int] | None) -> tuple[int, bool]:
     """Wait until the child ends, or SIGTERM comes, or the sandbox is gone: then our standard input closes.
 
     Signals do no more than write into a pipe, so that none can come between this and clearing up. Where
-    memory is watched, ``too_much`` says whether it is more than allowed. Returned are the exit code, and
+    processes are watched, ``excess`` says what of them is too much, or 0. Returned are the exit code, and
     whether the child has ended.
     """
     read, write = os.pipe()
@@ -123,16 +126,20 @@ def _watch(child: int, too_much: Any) -> tuple[int, bool]:
     poll = select.poll()
     poll.register(0, 0)
     poll.register(read, select.POLLIN)
-    period = None if too_much is None else 1000 * descendants.PERIOD
+    period = None if excess is None else 1000 * descendants.PERIOD
+    looked = 0.0
     while True:
+        descendants.bury(child)
         code = descendants.ended(child)
         if code is not None:
             return code, True
         ready = [descriptor for descriptor, _ in poll.poll(period)]
         if 0 in ready or (read in ready and signal.SIGTERM in os.read(read, 512)):
             return FAILED, False
-        if too_much is not None and too_much():
-            return TOO_MUCH, False
+        if excess is not None and time.monotonic() - looked >= descendants.PERIOD:
+            looked = time.monotonic()
+            if code := excess():
+                return code, False
 
 
 def _remove(parent: int, name: str) -> None:
@@ -224,19 +231,24 @@ def _main() -> None:
         _fail(error)
     for descriptor in (1, 2, spec["results"]):
         os.close(descriptor)
-    me, most = os.getpid(), spec["limits"]["memory_bytes"]
+    me, limits = os.getpid(), spec["limits"]
+    ours = 2 if spec["namespaces"] else 1  # the launcher, and the first process of the namespaces
 
-    def too_much() -> bool:
-        """Return whether the child's processes use too much memory, as is seen twice."""
-        ours = 2 if spec["namespaces"] else 1  # the launcher, and the first process of the namespaces
-        return all(descendants.used(proc, descendants.tree(proc, me)[ours:], most) > most for _ in "12")
+    def excess() -> int:
+        """Return what the child's processes have too much of, as is seen twice, or 0."""
+        for _ in range(2):
+            pids = descendants.tree(proc, me)[ours:]
+            many = len(pids) > limits["processes"] + SPARE
+            if not many and descendants.used(proc, pids, limits["memory_bytes"]) <= limits["memory_bytes"]:
+                return 0
+        return TOO_MANY if many else TOO_MUCH
 
-    code, ended = _watch(child, too_much if watched else None)
+    code, ended = _watch(child, excess if watched else None)
     descendants.clear(proc, 0 if ended else child, time.monotonic() + 2)
     _remove(folder, os.path.basename(spec["box"]))
-    if code == TOO_MUCH:
-        signal.signal(signal.SIGUSR1, signal.SIG_DFL)
-        os.kill(me, signal.SIGUSR1)  # no exit code of a child looks like it
+    if code < 0:  # no exit code of a child looks like it
+        signal.signal(-code, signal.SIG_DFL)
+        os.kill(me, -code)
     os._exit(code)
 
 
