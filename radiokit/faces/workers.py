@@ -14,6 +14,8 @@ __all__ = ["SerialExecutor", "available_workers", "open_executor"]
 
 CONNECT_TIMEOUT = 10.0
 """How long a scheduler may take to answer [s]."""
+GRACE = 10.0
+"""How long a task may take to clear up when the process that gave it is gone [s]."""
 
 
 class SerialExecutor(Executor):
@@ -72,7 +74,7 @@ def open_executor(workers: int | None = None, scheduler: str | None = None) -> I
     """Open the executor for a long run, and close it when the block ends.
 
     Results must not depend on the choice: hand every task its own seed, and keep the order of the results,
-    as ``Executor.map`` does.
+    as ``Executor.map`` does. An interrupt ends local processes at once, and they do not outlive this one.
 
     Parameters
     ----------
@@ -141,6 +143,7 @@ def _start_worker() -> None:
     import multiprocessing
     import signal
     import threading
+    import time
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = multiprocessing.parent_process()
@@ -148,6 +151,8 @@ def _start_worker() -> None:
 
     def watch() -> None:
         parent.join()
+        os.kill(os.getpid(), signal.SIGTERM)  # a task may clear up
+        time.sleep(GRACE)
         os._exit(1)
 
     threading.Thread(target=watch, name="parent", daemon=True).start()

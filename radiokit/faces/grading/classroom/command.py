@@ -8,7 +8,6 @@ from typing import Annotated, Any
 import typer
 
 from radiokit.faces.console import progress_bar, show_json, show_table, write
-from radiokit.facts.errors import TargetError
 
 __all__ = ["grade_class"]
 
@@ -29,11 +28,16 @@ def grade_class(
         str | None, typer.Option(help="Address of a Dask scheduler whose workers are sent the submissions.")
     ] = None,
     secret_file: Annotated[
-        Path | None, typer.Option(help="File with the secret that makes inputs unforeseeable.")
+        Path | None,
+        typer.Option(help="File with the text that makes inputs unforeseeable; else $RADIOKIT_SECRET."),
     ] = None,
-    roster: Annotated[Path | None, typer.Option(help="CSV file with the columns entry and student.")] = None,
+    roster: Annotated[
+        Path | None,
+        typer.Option(help="CSV file with the columns entry and student; else the entry's name counts."),
+    ] = None,
     language: Annotated[str, typer.Option(help="en or ru.")] = "en",
     again: Annotated[bool, typer.Option("--again", help="Grade all again.")] = False,
+    html: Annotated[bool, typer.Option("--html", help="Also write a page for each student.")] = False,
     csv: Annotated[Path | None, typer.Option(help="Also write class.csv here.")] = None,
     json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
 ) -> None:
@@ -41,11 +45,11 @@ def grade_class(
 
     Exit codes: 0 all graded, 2 bad usage or input, 3 some need a person.
     """
+    from radiokit.faces.grading.classroom.reports import write_nameless
     from radiokit.faces.grading.classroom.run import grade_class as run
+    from radiokit.faces.grading.command import read_secret
 
-    secret = "" if secret_file is None else _text(secret_file).strip()
-    if secret_file is not None and not secret:
-        raise TargetError(f"no secret in {secret_file}")
+    secret = read_secret(secret_file)
     with progress_bar("grading", not json) as progress:
         found = run(
             folder,
@@ -56,27 +60,18 @@ def grade_class(
             secret=secret,
             language=language,
             roster=roster,
+            html=html,
             again=again,
             progress=progress,
         )
     if csv is not None:
-        try:
-            csv.write_bytes((out / "class.csv").read_bytes())
-        except OSError as error:
-            raise TargetError(f"{csv} cannot be written: {error.strerror}") from None
+        write_nameless(csv, (out / "class.csv").read_text("utf-8"), str(csv))
     if json:
         show_json(found.summary)
     else:
         _show(found)
     if found.exit_code:
         raise typer.Exit(found.exit_code)
-
-
-def _text(file: Path) -> str:
-    try:
-        return file.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise TargetError(f"{file} cannot be read: {type(error).__name__}") from error
 
 
 def _show(found: Any) -> None:

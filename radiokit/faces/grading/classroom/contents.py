@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import re
 import stat
@@ -50,6 +51,13 @@ def read_submission(entry: Entry, assignment: str) -> Submission:
     """
     if not entry.paths:
         raise NoSubmissionError("absent")
+    try:
+        return _read_submission(entry, assignment)
+    except (OSError, RuntimeError) as error:  # RuntimeError: links in a circle
+        raise NoSubmissionError("unreadable") from error
+
+
+def _read_submission(entry: Entry, assignment: str) -> Submission:
     archives: list[_Candidate] = []
     found: list[_Candidate] = []
     for path, name in entry.paths.items():
@@ -91,7 +99,7 @@ def _files(path: Path, name: str) -> Iterator[_Candidate]:
         yield _Candidate(PurePosixPath(name), lambda: _read(path, home))
         return
     count = 0
-    for folder, folders, files in os.walk(path, onerror=_unreadable):
+    for folder, folders, files in os.walk(path, onerror=_raise):
         folders[:] = sorted(each for each in folders if not skipped(each))
         count += len(files) + len(folders)
         if count > MOST:
@@ -102,23 +110,20 @@ def _files(path: Path, name: str) -> Iterator[_Candidate]:
                 yield _Candidate(PurePosixPath(each), lambda file=file: _read(file, home))  # type: ignore[misc]
 
 
-def _unreadable(error: OSError) -> None:
-    raise NoSubmissionError("unreadable") from error
+def _raise(error: OSError) -> None:
+    raise error
 
 
 def _read(path: Path, home: Path) -> bytes:
     """Return the bytes of an ordinary file that lies below ``home``, wherever links lead."""
-    try:
-        real = path.resolve(strict=True)
-        if not real.is_relative_to(home.resolve()):
-            raise NoSubmissionError("link")
-        descriptor = os.open(real, os.O_RDONLY | os.O_NONBLOCK | os.O_NOFOLLOW)  # a pipe must not hold us up
-        with os.fdopen(descriptor, "rb") as file:
-            if not stat.S_ISREG(os.fstat(descriptor).st_mode):
-                raise NoSubmissionError("unreadable")
-            return _bounded(file.read(LARGEST + 1))
-    except (OSError, RuntimeError) as error:  # RuntimeError: links in a circle
-        raise NoSubmissionError("unreadable") from error
+    real = path.resolve(strict=True)
+    if not real.is_relative_to(home.resolve()):
+        raise NoSubmissionError("link")
+    descriptor = os.open(real, os.O_RDONLY | os.O_NONBLOCK | os.O_NOFOLLOW)  # a pipe must not hold us up
+    with os.fdopen(descriptor, "rb") as file:
+        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+            raise NoSubmissionError("unreadable")
+        return _bounded(file.read(LARGEST + 1))
 
 
 def _bounded(content: bytes) -> bytes:
@@ -129,8 +134,6 @@ def _bounded(content: bytes) -> bytes:
 
 def _members(archive: _Candidate) -> list[_Candidate]:
     """Return the scripts and notebooks in a .zip."""
-    import io
-
     content = io.BytesIO(archive.read())
     try:
         with zipfile.ZipFile(content) as opened:
@@ -156,6 +159,6 @@ def _members(archive: _Candidate) -> list[_Candidate]:
         candidate(member)
         for member in members
         if not member.is_dir()
-        and not any(map(skipped, PurePosixPath(member.filename).parts))
+        and not any(skipped(part) for part in PurePosixPath(member.filename).parts if part != "..")
         and PurePosixPath(member.filename).suffix.lower() in SUFFIXES
     ]

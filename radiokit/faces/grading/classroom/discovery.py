@@ -74,7 +74,7 @@ def discover(
     Raises
     ------
     TargetError
-        When the folder is not there, or has no entries.
+        When the folder is not there or cannot be read, or has no entries.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -86,10 +86,14 @@ def discover(
     place = Path(folder)
     if not place.is_dir():
         raise TargetError(f"no such folder: {place}")
-    others = {path.resolve() for path in ignore}
+    home, others = place.resolve(), {path.resolve() for path in ignore}
     found: dict[str, dict[Path, str]] = {}
-    for path in sorted(place.iterdir()):
-        if not skipped(path.name) and path.resolve() not in others:
+    try:
+        paths = sorted(place.iterdir())
+    except OSError as error:
+        raise TargetError(f"{place} cannot be read: {error.strerror}") from error
+    for path in paths:
+        if not skipped(path.name) and home / path.name not in others:
             key, name = _split(path)
             found.setdefault(key, {})[path] = name
     students = roster or {}

@@ -1,29 +1,47 @@
-"""Reports: what is written of a whole class: its table, its summary, and how long it took."""
+"""Reports: what is written of a whole class: its table, its summary, its pages, and how long it took."""
 
 from __future__ import annotations
 
-import csv
-import io
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 from radiokit.faces.grading.assignment import Assignment
 from radiokit.faces.grading.classroom.discovery import Entry
-from radiokit.faces.grading.classroom.store import Store, json_text
-from radiokit.faces.grading.classroom.summary import Tally, needs_review
-from radiokit.faces.grading.classroom.task import write_whole
+from radiokit.faces.grading.classroom.store import Store
+from radiokit.faces.grading.classroom.summary import Tally
+from radiokit.faces.grading.formats.page import to_html
+from radiokit.faces.grading.formats.table import to_csv
+from radiokit.faces.grading.formats.writing import json_text, write_file
 from radiokit.faces.grading.grades import Grade
-from radiokit.facts.errors import RadiokitError
+from radiokit.facts.errors import ParameterError, RadiokitError
 
-__all__ = ["write_reports", "write_timings"]
+__all__ = ["write_nameless", "write_reports", "write_timings"]
 
 
 def write_reports(
-    store: Store, entries: Sequence[Entry], assignment: Assignment, language: str
+    store: Store,
+    entries: Sequence[Entry],
+    assignment: Assignment,
+    language: str,
+    *,
+    absent: Collection[int] = (),
+    html: bool = False,
 ) -> dict[str, Any]:
     """Write ``class.csv`` and ``class.json`` from what is stored, and return the summary.
+
+    Parameters
+    ----------
+    store : Store
+    entries : sequence of Entry
+    assignment : Assignment
+    language : str
+    absent : collection of int
+        The places of entries without a submission.
+    html : bool
+        Whether to write each student's page, too.
 
     Raises
     ------
@@ -31,22 +49,23 @@ def write_reports(
         When a result is gone, or a file cannot be written.
     """
     tally = Tally(assignment, language)
-    table = io.StringIO(newline="")
-    rows = csv.writer(table, lineterminator="\n")
-    names = [question.name for question in assignment.questions]
-    rows.writerow(["entry", "student", "score", "points", *names, "review"])
-    for place, entry in enumerate(entries, start=1):
-        data = store.read(entry.key)
-        if data is None:
-            raise RadiokitError(f"the result of submission {place} of {len(entries)} is gone: run again")
-        grade = Grade.from_json(data["grade"])
-        tally.add(grade, handed_in=data["handed_in"])
-        scores = [question.score for question in grade.questions]
-        who = [_cell(entry.key), _cell(entry.student)]
-        rows.writerow([*who, grade.score, grade.points, *scores, "yes" if needs_review(grade) else ""])
+
+    def grades() -> Iterator[Grade]:
+        for place, entry in enumerate(entries):
+            called = f"submission {place + 1} of {len(entries)}"
+            try:
+                grade = Grade.from_json(store.read(entry.key))
+            except (LookupError, TypeError):
+                raise RadiokitError(f"the result of {called} is gone: run again") from None
+            tally.add(grade, handed_in=place not in absent)
+            if html:
+                write_nameless(store.page(entry.key), to_html(grade), f"the page of {called}")
+            yield grade
+
+    table = to_csv(grades())
     summary = tally.to_json()
-    _write(store, "class.csv", table.getvalue())
-    _write(store, "class.json", json_text(summary))
+    write_nameless(store.folder / "class.csv", table, "class.csv")
+    write_nameless(store.folder / "class.json", json_text(summary), "class.json")
     return summary
 
 
@@ -70,16 +89,20 @@ def write_timings(
         "graded": len(timings),
         "entries": {key: times for key, times in found.items() if times},
     }
-    _write(store, "timings.json", json_text(whole))
+    write_nameless(store.folder / "timings.json", json_text(whole), "timings.json")
 
 
-def _write(store: Store, name: str, text: str) -> None:
+def write_nameless(path: Path, text: str, called: str) -> None:
+    """Write a file whose name may be a student's, which the error must not say.
+
+    Raises
+    ------
+    RadiokitError
+        When it cannot be written.
+    """
     try:
-        write_whole(store.folder / name, text)
-    except OSError as error:
-        raise RadiokitError(f"{name} cannot be written: {error.strerror}") from None
-
-
-def _cell(text: str) -> str:
-    """Return a text that no spreadsheet takes for a formula."""
-    return f"'{text}" if text[:1] in ("=", "+", "-", "@", "\t", "\r") else text
+        write_file(path, text)
+    except ParameterError as error:
+        cause = error.__cause__
+        told = cause.strerror if isinstance(cause, OSError) else ""
+        raise RadiokitError(f"{called} cannot be written: {told or 'the system refuses'}") from None

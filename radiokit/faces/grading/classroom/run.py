@@ -9,27 +9,22 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import radiokit
 from radiokit.faces.grading.assignment import assignment_source
 from radiokit.faces.grading.classroom.contents import read_submission
 from radiokit.faces.grading.classroom.discovery import Entry, discover, read_roster
 from radiokit.faces.grading.classroom.fingerprint import code_digest, fingerprint, secret_digest
 from radiokit.faces.grading.classroom.pool import TRIES, completed
-from radiokit.faces.grading.classroom.reasons import NoSubmissionError, reason
-from radiokit.faces.grading.classroom.reports import write_reports, write_timings
+from radiokit.faces.grading.classroom.reasons import NoSubmissionError
+from radiokit.faces.grading.classroom.reports import write_nameless, write_reports, write_timings
 from radiokit.faces.grading.classroom.store import Store
-from radiokit.faces.grading.classroom.task import (
-    Done,
-    Order,
-    Task,
-    assignment_of,
-    nothing,
-    perform,
-)
+from radiokit.faces.grading.classroom.task import Done, Order, Task, assignment_of, failed, perform
+from radiokit.faces.grading.formats.writing import json_text
 from radiokit.faces.grading.grades import Grade
 from radiokit.faces.grading.limits import Limits
-from radiokit.faces.grading.words import checked_language, say
+from radiokit.faces.grading.unfinished import no_submission
+from radiokit.faces.grading.words import checked_language
 from radiokit.faces.workers import available_workers
-from radiokit.facts.errors import RadiokitError
 
 __all__ = ["ClassGrades", "grade_class"]
 
@@ -58,10 +53,10 @@ class ClassGrades:
         return iter(self.keys)
 
     def __getitem__(self, key: str) -> Grade:
-        found = Store(self.folder).read(key) if key in self.keys else None
-        if found is None:
+        found = Store(self.folder).read(key) if key in self.keys else {}
+        if not found:
             raise KeyError(key)
-        return Grade.from_json(found["grade"])
+        return Grade.from_json(found)
 
     @property
     def exit_code(self) -> int:
@@ -80,6 +75,7 @@ def grade_class(
     language: str = "en",
     roster: str | Path | None = None,
     limits: Limits | None = None,
+    html: bool = False,
     again: bool = False,
     progress: Callable[[int, int], None] | None = None,
 ) -> ClassGrades:
@@ -112,6 +108,8 @@ def grade_class(
         A CSV file with the columns ``entry`` and ``student``; who has no entry gets no points.
     limits : Limits, optional
         In place of the assignment's.
+    html : bool
+        Whether to write ``html/KEY.html``, too, the pages that students may be given.
     again : bool
         Whether to grade all again.
     progress : callable, optional
@@ -136,7 +134,7 @@ def grade_class(
     students = None if roster is None else read_roster(roster)
     ignored = [Path(each) for each in (out, roster) if each is not None]
     entries = discover(folder, roster=students, ignore=ignored)
-    with Store(Path(out)).opened() as store:
+    with Store(Path(out)).opened(pages=html) as store:
         run = _Run(order, store, entries, work.name, again=again, local=scheduler is None, progress=progress)
         found = completed(
             perform,
@@ -148,7 +146,7 @@ def grade_class(
         with closing(found):
             for item, done in found:
                 run.receive(item, done)
-        summary = write_reports(store, entries, work, order.language)
+        summary = write_reports(store, entries, work, order.language, absent=run.absent, html=html)
         seconds = time.monotonic() - began
         write_timings(store, entries, run.timings, seconds=seconds, workers=workers or 0)
         store.close()
@@ -189,6 +187,7 @@ class _Run:
         self.order, self.store, self.entries, self.name = order, store, entries, name
         self.again, self.local, self.progress = again, local, progress
         self.done = 0
+        self.absent: set[int] = set()
         self.timings: dict[str, Any] = {}
         self.secret = secret_digest(order.secret)
 
@@ -201,24 +200,24 @@ class _Run:
                 self._absent(place, error.text(self.order.language))
                 continue
             mark = self._mark(entry, found.content, found.suffix)
-            if not self.again and (self.store.read(entry.key) or {}).get("fingerprint") == mark:
+            stored = self.store.read(entry.key)
+            if not self.again and stored.get("fingerprint") == mark and not _needs_review(stored):
                 self._advance()
                 continue
             journal = self.store.journal(mark) if self.local else None
             if journal is not None and self.again:
                 journal.unlink(missing_ok=True)
-            task = Task(self.order, found.content, found.suffix, entry.student, str(journal or ""))
+            task = Task(self.order, found.content, found.suffix, entry.student, mark, str(journal or ""))
             yield _Item(place, mark), task
 
     def receive(self, item: _Item, done: Done | None) -> None:
         """Store what came back, or that nothing did."""
-        student = self.entries[item.place].student
+        entry = self.entries[item.place]
         if done is None:
-            text = reason(self.order.language, "broke", count=TRIES)
-            done = Done(nothing(self.order, student, text, review=text), failed=True)
-        self._write(item.place, "" if done.failed else item.mark, done.grade)
+            done = failed(self.order, entry.student, "broke", count=TRIES)
+        self._write(item.place, item.mark, done.grade)
         self.store.settle(item.mark)
-        self.timings[self.entries[item.place].key] = {"seconds": done.seconds, "measured": done.measured}
+        self.timings[entry.key] = {"seconds": done.seconds, "measured": done.measured}
         self._advance()
 
     def _mark(self, entry: Entry, content: bytes, suffix: str) -> str:
@@ -237,22 +236,22 @@ class _Run:
     def _absent(self, place: int, text: str) -> None:
         """Store that there is no submission."""
         entry, language = self.entries[place], self.order.language
-        grade = nothing(self.order, entry.student, say(language, "no-submission", error=text))
-        self._write(place, self._mark(entry, b"", ""), grade, handed_in=False)
+        grade = no_submission(assignment_of(self.order), text, student=entry.student, language=language)
+        self.absent.add(place)
+        self._write(place, self._mark(entry, b"", ""), grade.to_json())
         self._advance()
 
-    def _write(self, place: int, mark: str, grade: Mapping[str, Any], *, handed_in: bool = True) -> None:
-        try:
-            self.store.write(self.entries[place].key, mark, grade, handed_in=handed_in)
-        except OSError as error:
-            told = f"the result of {self._called(place)} cannot be written: {error.strerror}"
-            raise RadiokitError(told) from None
-
-    def _called(self, place: int) -> str:
-        """Return what an entry is called where its name must not stand."""
-        return f"submission {place + 1} of {len(self.entries)}"
+    def _write(self, place: int, mark: str, grade: Mapping[str, Any]) -> None:
+        data = {"radiokit": radiokit.__version__, "fingerprint": mark, **grade}
+        called = f"the result of submission {place + 1} of {len(self.entries)}"
+        write_nameless(self.store.place(self.entries[place].key), json_text(data), called)
 
     def _advance(self) -> None:
         self.done += 1
         if self.progress is not None:
             self.progress(self.done, len(self.entries))
+
+
+def _needs_review(stored: Mapping[str, Any]) -> bool:
+    """Return whether a person should look at a stored grade: such are graded again."""
+    return any(question.get("review") for question in stored.get("questions", ()))

@@ -6,24 +6,18 @@ import hashlib
 import json
 import re
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from radiokit.faces.grading.classroom.task import write_whole
+from radiokit.faces.grading.whole import clear_drafts
 from radiokit.facts.errors import ParameterError, RadiokitError
 
-__all__ = ["Store", "json_text"]
+__all__ = ["Store"]
 
 LONGEST = 120
 """How many bytes of a key are used in a file's name; file systems end at 255."""
-
-
-def json_text(data: Any) -> str:
-    """Return data as JSON text, the same for the same data."""
-    return json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 class Store:
@@ -37,10 +31,11 @@ class Store:
         self.folder = folder
         self.results = folder / "results"
         self.partial = folder / "partial"
+        self.pages = folder / "html"
 
     @contextmanager
-    def opened(self) -> Iterator[Store]:
-        """Make the folder, and keep other runs out of it for the block.
+    def opened(self, *, pages: bool = False) -> Iterator[Store]:
+        """Make the folder, for pages too, and keep other runs out of it for the block.
 
         Raises
         ------
@@ -50,7 +45,7 @@ class Store:
             When another run is at work in it.
         """
         try:
-            for place in (self.results, self.partial):
+            for place in (self.results, self.partial, *([self.pages] if pages else [])):
                 place.mkdir(parents=True, exist_ok=True)
             lock = (self.folder / ".lock").open("w")
         except OSError as error:
@@ -58,6 +53,8 @@ class Store:
             raise ParameterError("out", str(self.folder), allowed) from error
         with lock:
             self._lock(lock.fileno())
+            for place in (self.folder, self.results, self.pages):
+                clear_drafts(place)
             yield self
 
     def _lock(self, descriptor: int) -> None:
@@ -78,27 +75,30 @@ class Store:
         >>> Store(Path("out")).place("Anna Petrova_17").as_posix()
         'out/results/Anna Petrova_17.json'
         """
+        return self.results / f"{self._plain(key)}.json"
+
+    def page(self, key: str) -> Path:
+        """Return the file of a student's page."""
+        return self.pages / f"{self._plain(key)}.html"
+
+    @staticmethod
+    def _plain(key: str) -> str:
         plain = re.sub(r"[/\\\x00-\x1f\x7f]|^\.", "_", key).encode()[:LONGEST].decode(errors="ignore")
         if plain != key:
             plain = f"{plain}-{hashlib.sha256(key.encode()).hexdigest()[:12]}"
-        return self.results / f"{plain}.json"
+        return plain
 
     def journal(self, mark: str) -> Path:
         """Return the file of what is done so far of what has this fingerprint."""
         return self.partial / f"{mark[:40]}.json"
 
-    def read(self, key: str) -> dict[str, Any] | None:
-        """Return what is stored for a key; None where that is nothing, or no such data."""
+    def read(self, key: str) -> dict[str, Any]:
+        """Return what is stored for a key; nothing where that is no data."""
         with suppress(OSError, ValueError):
-            data = json.loads(self.place(key).read_text(encoding="utf-8"))
-            if isinstance(data, dict) and data.get("key") == key and isinstance(data.get("grade"), dict):
+            data = json.loads(self.place(key).read_text("utf-8"))
+            if isinstance(data, dict):
                 return data
-        return None
-
-    def write(self, key: str, mark: str, grade: Mapping[str, Any], *, handed_in: bool) -> None:
-        """Store a grade; with an empty ``mark``, so that the next run grades it again."""
-        made = {"key": key, "radiokit": version("radiokit"), "fingerprint": mark, "handed_in": handed_in}
-        write_whole(self.place(key), json_text({**made, "grade": grade}))
+        return {}
 
     def settle(self, mark: str) -> None:
         """Remove what was kept of a grade that is complete."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import multiprocessing
 import os
 import signal
@@ -18,13 +17,16 @@ from typing import Any, NoReturn
 from radiokit.faces.grading.assignment import Assignment, assignment_from_source
 from radiokit.faces.grading.classroom.fingerprint import code_digest
 from radiokit.faces.grading.classroom.reasons import reason
+from radiokit.faces.grading.formats.writing import json_text, write_file
 from radiokit.faces.grading.grader import grade
-from radiokit.faces.grading.grades import Grade, PartGrade, QuestionGrade
+from radiokit.faces.grading.grades import Grade
 from radiokit.faces.grading.limits import Limits
 from radiokit.faces.grading.protocol import plain_text
+from radiokit.faces.grading.record import continued, record
+from radiokit.faces.grading.unfinished import nothing_yet, with_pending
 from radiokit.facts.errors import RadiokitError
 
-__all__ = ["Done", "Order", "Task", "assignment_of", "nothing", "perform", "write_whole"]
+__all__ = ["Done", "Order", "Task", "assignment_of", "failed", "perform"]
 
 ONE_AT_A_TIME = threading.Lock()
 """What a submission prints is caught process-wide, so threads of one worker take turns."""
@@ -50,12 +52,13 @@ class Order:
 
 @dataclass(frozen=True)
 class Task:
-    """One submission; ``journal`` is the file to keep what is graded so far, or "" to keep nothing."""
+    """One submission and its fingerprint; ``journal`` is a file to keep what is graded so far, or ""."""
 
     order: Order
     content: bytes
     suffix: str
     student: str
+    mark: str
     journal: str
 
     def __repr__(self) -> str:
@@ -64,12 +67,11 @@ class Task:
 
 @dataclass(frozen=True)
 class Done:
-    """A grade as data, what was measured, and why there is none if the grader itself failed."""
+    """A grade as data, and what was measured."""
 
     grade: Mapping[str, Any]
     seconds: Mapping[str, float] = field(default_factory=dict)
     measured: Mapping[str, float] = field(default_factory=dict)
-    failed: bool = False
 
     def __repr__(self) -> str:
         return "Done()"
@@ -105,70 +107,29 @@ def perform(task: Task) -> Done:
                     student=task.student,
                     secret=order.secret,
                     language=order.language,
-                    earlier=_earlier(task.journal),
-                    keep=(lambda grade: _keep(task.journal, grade)) if task.journal else None,
+                    earlier=continued(Path(task.journal), task.mark) if task.journal else None,
+                    keep=(lambda grade: _keep(task, grade)) if task.journal else None,
                 )
         except Exception as error:
             told = f"{type(error).__name__}: {error}"
             told = plain_text(told.replace(folder, "") if folder else told)
-            text = reason(order.language, "failed", error=told)
-            return Done(nothing(order, task.student, text, review=text), failed=True)
+            return failed(order, task.student, "failed", error=told)
     return Done(found.to_json(), dict(found.seconds), dict(found.measured))
 
 
-def nothing(order: Order, student: str, text: str, *, review: str = "") -> dict[str, Any]:
-    """Return the grade of what cannot be graded, as data: no points, and why."""
-    work, language = assignment_of(order), order.language
-    questions = tuple(
-        QuestionGrade(
-            name=question.name,
-            title=question.title[language],
-            parts=tuple(
-                PartGrade(
-                    name=part.name,
-                    title=part.title[language],
-                    score=0.0,
-                    points=question.worth(part),
-                    visibility=part.visibility,
-                    text=text,
-                )
-                for part in question.parts
-            ),
-            review=review,
-        )
-        for question in work.questions
-    )
-    return Grade(
-        assignment=work.name,
-        title=work.title[language],
-        student=student,
-        language=language,
-        questions=questions,
-        problems=(text,),
-    ).to_json()
+def failed(order: Order, student: str, key: str, **values: Any) -> Done:
+    """Return the grade of what could not be graded: no points so far, and why a person should look."""
+    text = reason(order.language, key, **values)
+    work = assignment_of(order)
+    blank = with_pending(nothing_yet(work, student=student, language=order.language), work)
+    questions = tuple(replace(question, review=text) for question in blank.questions)
+    return Done(replace(blank, questions=questions, problems=(text,), complete=True).to_json())
 
 
-def write_whole(path: Path, text: str) -> None:
-    """Write a file such that it is there whole or not at all, whenever this process ends."""
-    draft = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        draft.write_text(text, encoding="utf-8")
-        draft.replace(path)
-    finally:
-        draft.unlink(missing_ok=True)
-
-
-def _keep(journal: str, grade: Grade) -> None:
+def _keep(task: Task, grade: Grade) -> None:
     if not grade.complete:
-        write_whole(Path(journal), json.dumps(grade.to_json(), ensure_ascii=False))
-
-
-def _earlier(journal: str) -> Grade | None:
-    """Return what was graded before a run was cut short; its name says of what."""
-    if journal:
-        with suppress(OSError, ValueError, KeyError, TypeError):
-            return Grade.from_json(json.loads(Path(journal).read_text(encoding="utf-8")))
-    return None
+        with suppress(RadiokitError):  # then more is graded again, should this run be stopped
+            write_file(Path(task.journal), json_text(record(grade, task.mark)))
 
 
 class _EndedError(BaseException):
@@ -191,4 +152,5 @@ def _ending_cleanly() -> Iterator[None]:
 
 
 def _end(signum: int, frame: object) -> NoReturn:
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # the pool says so again when the first worker has gone
     raise _EndedError

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from radiokit.faces.grading.classroom.task import write_whole
 from radiokit.faces.grading.formats.github import to_github_output
 from radiokit.faces.grading.formats.gradescope import to_gradescope
 from radiokit.faces.grading.formats.junit import to_junit
@@ -17,6 +16,7 @@ from radiokit.faces.grading.formats.page import to_html
 from radiokit.faces.grading.formats.table import to_csv
 from radiokit.faces.grading.formats.text import to_text
 from radiokit.faces.grading.grades import Grade
+from radiokit.faces.grading.whole import write_whole
 from radiokit.facts.errors import ParameterError
 
 __all__ = ["FORMATS", "Output", "json_text", "output", "write_file"]
