@@ -30,9 +30,10 @@ class Result:
     one line what the function did instead, as in "took longer than 1 s". ``raised`` is the exception's type
     where it raised one, ``where`` the last place in the submission that it came through, as in "line 12" or
     "cell 3, line 2", and ``row`` the row that was at hand, where the function was called row by row.
-    ``output`` is the beginning of what it printed. ``protections`` were active during the call, ``missing``
-    were not, see ``PROTECTIONS``. ``seconds`` is wall time, a child's start included. ``facts`` are what
-    ``Sandbox.load`` and ``Sandbox.facts`` asked for.
+    ``ended`` says that the process ended, or was ended, before it answered. ``output`` is the beginning of
+    what it printed. ``protections`` were active during the call, ``missing`` were not, see ``PROTECTIONS``.
+    ``seconds`` is wall time, a child's start included. ``facts`` are what ``Sandbox.load`` and
+    ``Sandbox.facts`` asked for.
     """
 
     values: tuple[Array, ...] = ()
@@ -40,6 +41,7 @@ class Result:
     raised: str = ""
     where: str = ""
     row: int | None = None
+    ended: bool = False
     seconds: float = 0.0
     output: str = ""
     protections: tuple[str, ...] = ()

@@ -251,7 +251,7 @@ class Sandbox:
             if budget.left < seconds:
                 seconds, late = budget.left, f"took longer than {budget.seconds:g} s in all"
         if seconds <= 0:
-            return Result(error=late, protections=self._protections)
+            return Result(error=late, ended=True, protections=self._protections)
         asked = time.monotonic()
         result = self._request(request, arrays, seconds, late)
         for budget in self._budgets:
@@ -281,6 +281,7 @@ class Sandbox:
             malformed = isinstance(error, MalformedError)
             found = {"error": f"gave an answer that is not believed: {error}" if malformed else str(error)}
             found = {"error": late} if isinstance(error, LateError) else found
+            found["ended"] = True
             self.close()
         except BaseException:
             self.close()

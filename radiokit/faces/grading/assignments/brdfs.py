@@ -59,7 +59,11 @@ def _parts(
         Part(name="ordinary", judge=ordinary, weight=2),
         Part(name="hard", judge=hard, visibility="after_published"),
     )
-    return parts if laws is None else (*parts, Part(name="laws", judge=laws, visibility="after_published", title=LAWS))
+    return (
+        parts
+        if laws is None
+        else (*parts, Part(name="laws", judge=laws, visibility="after_published", title=LAWS))
+    )
 
 
 CONVENTIONS: Words = {
