@@ -2,6 +2,7 @@ from .assignment import Assignment as Assignment
 from .assignment import list_assignments as list_assignments
 from .assignment import load_assignment as load_assignment
 from .assignment import student_rng as student_rng
+from .estimator import Estimator as Estimator
 from .finding import Callee as Callee
 from .finding import Finding as Finding
 from .finding import Judge as Judge

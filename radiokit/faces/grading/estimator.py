@@ -1,0 +1,422 @@
+"""Estimator: judges a Monte Carlo estimate with its standard error, by running it with many seeds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal, get_args
+
+import numpy as np
+
+from radiokit.faces.diagnosis.catalogue import CATALOGUE
+from radiokit.faces.diagnosis.diagnose import diagnose
+from radiokit.faces.diagnosis.result import Suspicion
+from radiokit.faces.grading.finding import Callee, Finding
+from radiokit.faces.grading.protocol import Array
+from radiokit.faces.grading.runs import FLOOR, Runs, UnusableError, gather
+from radiokit.faces.grading.samplewords import slip, tell
+from radiokit.faces.grading.words import say
+from radiokit.facts.errors import ParameterError
+
+__all__ = ["LEVEL", "ROUNDS", "Aspect", "Estimator", "each_level"]
+
+Aspect = Literal["value", "error", "efficiency"]
+
+LEVEL = 1e-6 / 16
+"""The probability that one judge rejects a right function: sixteen of them reject one in 1e6 gradings."""
+
+ROUNDS = 3
+"""How often a test must fail, each time with other seeds, before it counts.
+
+So each needs a level of only ``each_level``, near 0.002, where Student's and χ² distributions hold for what
+is not normal; at 1e-7 they would not."""
+
+SURE = 0.5
+WIDER = 1.25
+"""What the errors are multiplied by before a misconception is looked for: few seeds give them."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Estimator:
+    """Judges a function that estimates by sampling: ``f(*inputs, samples, seed) -> (value, standard_error)``.
+
+    It is run with ``runs`` seeds for each of ``cases`` inputs at N = ``samples`` and at 4 N. Inputs without
+    dimensions arrive as Python's numbers. What is judged is one aspect:
+
+    - ``"value"``: the same seed gives the same answer and another seed another; the mean is right (Student's
+      t for each input, and all together); four times as many samples halve the spread (variance ratios);
+    - ``"error"``: the standard errors are the spread between seeds, neither less nor more (variance ratios);
+      where the value is wrong, it must be so by a misconception that is known;
+    - ``"efficiency"``: the value is right, and the variance of one sample is at most ``budget``.
+
+    Estimators without variance are right. A right estimator whose runs are nearly normal is rejected at most
+    once in 1.6e7 gradings; see ``LEVEL`` and ``ROUNDS``.
+
+    Parameters
+    ----------
+    inputs : callable
+        From a generator to the inputs by name, numbers or arrays, in the order of the parameters, without
+        ``samples`` and ``seed``.
+    reference : callable
+        ``reference(**inputs)`` gives the exact value.
+    aspect : {"value", "error", "efficiency"}
+    samples : int
+        N, at least 64.
+    runs : int
+        Seeds, at least 8.
+    cases : int
+        Inputs, at least 1; misconceptions are told apart only by inputs that differ.
+    context : callable, optional
+        ``context(**inputs)`` gives further inputs to the diagnosis, numbers by the names that it knows, such
+        as ``pdf``, ``theta``, ``distance``.
+    variants : mapping
+        What wrong solutions give on average, by the misconception's name: ``{name: f(**inputs)}``.
+    credit : mapping
+        The share that a slip still earns, by its name: ``{"samples-ignored": 0.5}``.
+    budget : callable, optional
+        ``budget(**inputs)`` gives the largest variance of one sample that is efficient; needed for that
+        aspect. What a right solution has should be smaller by a half or more.
+    uniform : callable, optional
+        ``uniform(**inputs)`` gives the variance of uniform sampling, to which the text compares.
+    slowest : float
+        Wall time of a sample [s] above which no variance is efficient, for the best of all runs. Loops in
+        Python take some 1e-5.
+
+    Raises
+    ------
+    ParameterError
+        When an argument is out of its range.
+    """
+
+    inputs: Callable[[np.random.Generator], Mapping[str, Any]]
+    reference: Callable[..., Any]
+    aspect: Aspect = "value"
+    samples: int = 256
+    runs: int = 24
+    cases: int = 4
+    context: Callable[..., Mapping[str, Any]] | None = None
+    variants: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
+    credit: Mapping[str, float] = field(default_factory=dict)
+    budget: Callable[..., float] | None = None
+    uniform: Callable[..., float] | None = None
+    slowest: float = 1e-3
+
+    def __post_init__(self) -> None:
+        if self.aspect not in get_args(Aspect):
+            raise ParameterError("aspect", self.aspect, ", ".join(get_args(Aspect)))
+        for name, least in (("samples", 64), ("runs", 8), ("cases", 1)):
+            value = getattr(self, name)
+            if type(value) is not int or value < least:
+                raise ParameterError(name, value, f"an integer of at least {least}")
+        if not all(0 <= share <= 1 for share in self.credit.values()):
+            raise ParameterError("credit", self.credit, "shares in [0, 1]")
+        if self.aspect == "efficiency" and (self.budget is None or self.uniform is None):
+            raise ParameterError("budget, uniform", None, "variances, where efficiency is judged")
+        if not 0 < self.slowest < math.inf:
+            raise ParameterError("slowest", self.slowest, "a finite number above 0")
+
+    def judge(
+        self,
+        callee: Callee,
+        rng: np.random.Generator,
+        *,
+        language: str,
+        hints: Mapping[str, Mapping[str, str]],
+        shown: bool,
+    ) -> Finding:
+        """Judge an estimator: right, or what is wrong with it and why."""
+        failing: set[str] = set()
+        for turn in range(ROUNDS):
+            try:
+                runs = gather(
+                    callee,
+                    rng,
+                    inputs=self.inputs,
+                    reference=self.reference,
+                    cases=self.cases,
+                    samples=self.samples,
+                    runs=self.runs,
+                    language=language,
+                    hints=hints,
+                )
+            except UnusableError as error:
+                return error.finding
+            frozen = runs.frozen and not runs.exact
+            if turn == 0:
+                measured = {"seconds_per_sample": runs.seconds}
+            level = each_level(len(list(self._tests(runs))))
+            failed = {name for name, p in self._tests(runs) if p < level}
+            failing = failed if turn == 0 else failing & failed
+            if not failing and not frozen:
+                return self._right(runs, language, measured)
+        return self._wrong(runs, failing, language=language, hints=hints, shown=shown, measured=measured)
+
+    def _tests(self, runs: Runs) -> Iterator[tuple[str, float]]:
+        """Yield the tests of this aspect, and their p-values."""
+        one, together = _bias(runs)
+        yield "bias", together
+        yield "bias at one", one
+        if self.aspect == "value":
+            yield "rate", _rate(runs)
+        elif self.aspect == "error":
+            yield "honest", _honest(runs, slice(None))
+            halves = [_honest(runs, slice(k, k + 2)) for k in range(0, len(runs.right), 2)]
+            yield "honest at one", min(1.0, min(halves) * len(halves))
+        else:
+            yield "variance", _excess(runs, self._given(self.budget, runs))
+            yield "time", 0.0 if runs.seconds > self.slowest else 1.0
+
+    def _given(self, function: Callable[..., float] | None, runs: Runs) -> Array:
+        assert function is not None
+        return np.array([float(function(**inputs)) for inputs in runs.inputs])
+
+    def _right(self, runs: Runs, language: str, measured: dict[str, float]) -> Finding:
+        if self.aspect == "efficiency":
+            variance, ratio = runs.samples * runs.variances, self._ratio(runs)
+            if float(np.mean(variance)) > 0 and runs.seconds > 0:
+                measured["efficiency"] = 1 / (float(np.mean(variance)) * runs.seconds)
+            text = tell(language, "efficient", ratio=f"{ratio:.1g}")
+            return Finding(
+                share=1.0, text=tell(language, "no-variance") if ratio < FLOOR else text, measured=measured
+            )
+        if runs.exact and (runs.errors <= runs.floor[:, None]).all():
+            return Finding(share=1.0, text=tell(language, "exact"), measured=measured)
+        key = "unbiased" if self.aspect == "value" else "honest"
+        return Finding(share=1.0, text=tell(language, key, runs=runs.values.size), measured=measured)
+
+    def _ratio(self, runs: Runs) -> float:
+        """Return the variance of one sample, of what uniform sampling has; its geometric mean."""
+        shares = runs.samples * (runs.variances + 1e-300) / self._given(self.uniform, runs)
+        return float(np.exp(np.mean(np.log(shares))))
+
+    def _wrong(
+        self,
+        runs: Runs,
+        failing: set[str],
+        *,
+        language: str,
+        hints: Mapping[str, Mapping[str, str]],
+        shown: bool,
+        measured: Mapping[str, float],
+    ) -> Finding:
+        def found(text: str, name: str = "", confidence: float = 0.0) -> Finding:
+            share = self.credit.get(name, 0.0)
+            rounded = round(confidence, 2)
+            return Finding(share=share, text=text, diagnosis=name, confidence=rounded, measured=measured)
+
+        biased = any(name.startswith("bias") for name in failing)
+        value = self._value(runs, language, hints, shown) if biased or runs.frozen else None
+        if runs.frozen and not runs.exact and (value is None or not value.diagnosis):
+            return found(slip(language, "seed-reused", hints), "seed-reused", 1.0)
+        if self.aspect == "error":
+            if value is not None and not value.diagnosis:
+                return found(f"{tell(language, 'wrong-value')}; {value.text}")
+            if not any(name.startswith("honest") for name in failing):
+                return self._right(runs, language, dict(measured))
+            name, confidence = _error_slip(runs)
+            ratio = math.exp(float(_claims(runs)[0].mean()) / 2)
+            told = tell(language, "ratio", ratio=f"{ratio:.2g}")
+            text = slip(language, name, hints)
+            return found(text if name == "error-zero" else f"{text} ({told})", name, confidence)
+        if value is not None:
+            if self.aspect == "efficiency":
+                return found(
+                    tell(language, "biased-first", problem=value.text), value.diagnosis, value.confidence
+                )
+            return found(value.text, value.diagnosis, value.confidence)
+        if "time" in failing and "variance" not in failing:
+            return found(tell(language, "slow"), "inefficient", 1.0)
+        if self.aspect == "efficiency":
+            most = float(
+                np.exp(np.mean(np.log(self._given(self.budget, runs) / self._given(self.uniform, runs))))
+            )
+            told = tell(language, "inefficient", ratio=f"{self._ratio(runs):.2g}", most=f"{most:.2g}")
+            return found(f"{slip(language, 'inefficient', hints)} ({told})", "inefficient", 1.0)
+        name = _rate_slip(runs)
+        return found(slip(language, name, hints), name, 1.0)
+
+    def _value(
+        self, runs: Runs, language: str, hints: Mapping[str, Mapping[str, str]], shown: bool
+    ) -> Finding:
+        """Say what is wrong with the mean of the values; the diagnosis is empty where nothing known fits."""
+        worst = int(np.argmax(np.abs(runs.means - runs.right) / np.maximum(runs.floor, 1e-300)))
+        count = runs.values.shape[1]
+        told = {"inputs": runs.brief(worst), "runs": count, "value": f"{runs.means[worst]:.4g}"}
+        text = tell(language, "biased-shown", right=f"{runs.right[worst]:.4g}", **told)
+        if not shown:
+            ratio = f"{float(np.mean(runs.means / runs.right)):.4g}"
+            text = tell(language, "biased", runs=runs.values.size, ratio=ratio)
+        for suspicions, ambiguous in self._suspected(runs, language):
+            first = suspicions[0]
+            if first.confidence < SURE or ambiguous:
+                names = " / ".join(slip(language, each.name, hints) for each in suspicions[:2])
+                why = say(language, "one-of", names=names)
+                return Finding(
+                    share=0.0, text=f"{text}; {why}", diagnosis=first.name, confidence=first.confidence
+                )
+            detail = f" ({first.detail})" if first.detail else ""
+            why = slip(language, first.name, hints) if first.name in hints or not detail else first.message
+            return Finding(
+                share=0.0,
+                text=f"{why.rstrip('.')}{detail}; {text}",
+                diagnosis=first.name,
+                confidence=first.confidence,
+            )
+        return Finding(share=0.0, text=text)
+
+    def _suspected(self, runs: Runs, language: str) -> Iterator[tuple[tuple[Suspicion, ...], bool]]:
+        """Yield what explains the means: first among this question's variants, then in the catalogue."""
+        known = {name: values for name, values in _numbers(runs, self.context).items()}
+        others = {
+            name: np.array([float(variant(**inputs)) for inputs in runs.inputs])
+            for name, variant in self.variants.items()
+        }
+        error = WIDER * np.sqrt(runs.variances / runs.values.shape[1]) + runs.floor / 10
+
+        def reference(**changed: Any) -> Array:
+            return np.array(
+                [
+                    float(
+                        self.reference(**{n: changed[n][k] if n in changed else v for n, v in inputs.items()})
+                    )
+                    for k, inputs in enumerate(runs.inputs)
+                ]
+            )
+
+        for variants, catalogue in ((others, ()), (reference, CATALOGUE)):
+            if variants:
+                found = diagnose(
+                    runs.means,
+                    runs.right,
+                    inputs=known,
+                    variants=variants,
+                    error=error,
+                    language=language,
+                    catalogue=catalogue,
+                )
+                if found.suspicions:
+                    yield found.suspicions, bool(found.ambiguous)
+
+
+def each_level(tests: int) -> float:
+    """Return the level of each of ``tests`` tests in each round.
+
+    >>> round(each_level(3), 5)
+    0.00275
+    """
+    return float((LEVEL / tests) ** (1 / ROUNDS))
+
+
+def _numbers(runs: Runs, context: Callable[..., Mapping[str, Any]] | None) -> dict[str, Array]:
+    """Return the inputs that are numbers, one for each group, with those of the context."""
+    rows = [
+        {**inputs, **(context(**inputs) if context is not None else {}), "samples": count}
+        for inputs, count in zip(runs.inputs, runs.samples, strict=True)
+    ]
+    names = [name for name, value in rows[0].items() if np.ndim(value) == 0]
+    return {name: np.array([float(row[name]) for row in rows]) for name in names}
+
+
+def _bias(runs: Runs) -> tuple[float, float]:
+    """Return the p-values that no group is biased, and that they are not all together."""
+    from scipy.special import ndtri, stdtr
+
+    count = runs.values.shape[1]
+    off = runs.means - runs.right
+    off = np.sign(off) * np.maximum(np.abs(off) - runs.floor, 0.0)
+    error = np.sqrt(runs.variances / count)
+    with np.errstate(all="ignore"):
+        t = np.where(off == 0, 0.0, off / error)
+    tails = np.maximum(stdtr(count - 1, -np.abs(t)), 1e-300)
+    scores = -np.sign(t) * ndtri(tails)
+    # A relative bias stands out by √N.
+    together = float(np.sqrt(runs.samples) @ scores / math.sqrt(runs.samples.sum()))
+    return min(1.0, 2 * float(tails.min()) * len(t)), math.erfc(abs(together) / math.sqrt(2))
+
+
+def _steady(runs: Runs) -> tuple[Array, float, float]:
+    """Return the logarithms of the groups' variances without the bias of few runs, and their variance.
+
+    The latter is that of normal runs, and what heavy tails add: as the runs' kurtosis shows it, or the
+    unsteadiness of the standard errors, whichever is more.
+    """
+    from scipy.special import polygamma, psi
+
+    count = runs.values.shape[1]
+    dof = count - 1
+    bias = float(psi(dof / 2) - math.log(dof / 2))
+    residuals = runs.values - runs.means[:, None]
+    with np.errstate(all="ignore"):
+        scaled = np.nan_to_num(residuals / np.sqrt(runs.variances)[:, None])
+    kurtosis = max(0.0, float(np.mean(scaled**4)) - 3)
+    logs: Array = np.log(runs.variances + (runs.floor / 10) ** 2 + 1e-300) - bias
+    tails = max(kurtosis, float(runs.unsteadiness.mean()))
+    return logs, float(polygamma(1, dof / 2)), tails / count
+
+
+def _rate(runs: Runs) -> float:
+    """Return the p-value that quadrupling the samples divides the variance by 4 or more."""
+    logs, normal, extra = _steady(runs)
+    gain = logs[0::2] - logs[1::2] - math.log(4)
+    gain = np.where(runs.variances[1::2] <= runs.floor[1::2] ** 2, 0.0, gain)
+    score = float(gain.sum()) / math.sqrt(2 * len(gain) * (normal + extra))
+    return 0.5 * math.erfc(-score / math.sqrt(2)) if score < 0 else 1.0
+
+
+def _claims(runs: Runs) -> tuple[Array, Array]:
+    """Return the logarithm of the ratio of claimed to true variance for each group, and its variance."""
+    logs, normal, _ = _steady(runs)
+    claimed = np.log(runs.claimed + (runs.floor / 10) ** 2 + 1e-300)
+    return claimed - logs, normal + 2 * runs.unsteadiness / runs.values.shape[1]
+
+
+def _honest(runs: Runs, groups: slice) -> float:
+    """Return the p-value that the standard errors are the spread between seeds."""
+    ratios, spread = (array[groups] for array in _claims(runs))
+    rounding = (runs.variances <= runs.floor**2) & (runs.claimed <= runs.floor**2)
+    ratios = np.where(rounding[groups], 0.0, ratios)
+    return math.erfc(abs(float(ratios.sum())) / math.sqrt(2 * float(spread.sum())))
+
+
+def _excess(runs: Runs, budget: Array) -> float:
+    """Return the p-value that the variance of one sample is at most the budget."""
+    logs, normal, extra = _steady(runs)
+    over = logs + np.log(runs.samples) - np.log(budget)
+    score = float(over.sum()) / math.sqrt(len(over) * (normal + extra))
+    return 0.5 * math.erfc(score / math.sqrt(2)) if score > 0 else 1.0
+
+
+def _error_slip(runs: Runs) -> tuple[str, float]:
+    """Return the name of what was given for the standard error, and how sure that is."""
+    ratios, spread = _claims(runs)
+    if (runs.claimed <= runs.floor**2).all():
+        repeated = _rate(runs) < each_level(1) and _rate_slip(runs) == "sample-repeated"
+        return ("sample-repeated" if repeated else "error-zero"), 1.0
+    count, variance = np.log(runs.samples), _steady(runs)[0]
+    known = {  # the ratio's logarithm, and how often the variance between seeds is in the misfit
+        "deviation-for-error": (count, 1),
+        "error-of-sum": (2 * count, 1),
+        "error-divided-by-samples": (-count, 1),
+        "variance-for-error": (variance, 2),
+        "sample-variance-for-error": (variance + 2 * count, 2),
+        "interval-for-error": (np.full_like(count, 2 * math.log(1.96)), 1),
+    }
+    misfit = {
+        name: float(np.sum((ratios - log) ** 2 / (times**2 * spread))) for name, (log, times) in known.items()
+    }
+    best = min(misfit, key=lambda name: misfit[name])
+    if misfit[best] < 4 * len(ratios):
+        return best, 1.0
+    return ("error-too-large" if ratios.sum() > 0 else "error-too-small"), 1.0
+
+
+def _rate_slip(runs: Runs) -> str:
+    """Return why the error does not fall as 1/√N."""
+    logs, normal, extra = _steady(runs)
+    gain = logs[0::2] - logs[1::2]
+    score = float(gain.sum()) / math.sqrt(2 * len(gain) * (normal + extra))
+    if abs(score) > 2.5:
+        return "error-not-falling"
+    claimed = runs.claimed <= 1e-6 * runs.variances
+    return "sample-repeated" if claimed.all() else "samples-ignored"
