@@ -220,8 +220,8 @@ def test_remote_functions_are_worth_what_they_are_here(honest, rng):
 def test_a_scalar_function_is_sent_blocks(honest, monkeypatch):
     f = remote_bsdf(honest, "scalar")
     calls = []
-    request = honest._request
-    monkeypatch.setattr(honest, "_request", lambda *a, **k: calls.append(a) or request(*a, **k))
+    request = honest._called
+    monkeypatch.setattr(honest, "_called", lambda *a, **k: calls.append(a) or request(*a, **k))
     wi, wo = np.tile([0.0, 0.0, 1.0], (5000, 1)), np.tile([0.0, 0.6, 0.8], (5000, 1))
     values = f.evaluate(wi, wo)
     assert values.shape == (5000,)
@@ -270,6 +270,13 @@ def test_harm_is_explained_in_a_line_and_the_next_call_is_answered(hostile, func
     assert len(result.error) < 400
     assert set(result.protections) | set(result.missing) == set(PROTECTIONS)
     np.testing.assert_array_equal(hostile.call("double", X).values[0], 2 * X)
+
+
+def test_walls_are_there_where_they_can_be(hostile):
+    code = "from radiokit.faces.grading.namespaces import unshare; unshare()"
+    granted = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False).returncode == 0
+    protections = hostile.call("double", X).protections
+    assert {"processes", "network", "root", "privileges"} <= set(protections) or not granted
 
 
 @pytest.mark.parametrize("function", ["patches", "prints_answers", "deletes"])
@@ -330,7 +337,7 @@ def test_nothing_outlives_the_sandbox(tmp_path, name, namespaces):
     with Sandbox(tmp_path / "hostile.py", namespaces=namespaces) as sandbox:
         assert sandbox.call("daemon", X, parameters={"name": name}).ok
         assert running(name)
-        box = Path(sandbox._box)
+        box = Path(sandbox._child.folder)
         assert box.is_dir()
     assert not running(name)
     assert not box.exists()

@@ -1,8 +1,8 @@
 """The child: the program that runs inside a sandbox, loads a submission and calls its functions.
 
-It is started as ``python -I -B child.py SITE RESULTS``: SITE is the folder that NumPy is in, RESULTS the file
-descriptor of the answers; requests come from standard input. It imports nothing of radiokit but the
-protocol, whose file lies beside it. What it says is not believed: the sandbox checks every answer.
+It is started as ``python -P -s -S -B child.py RESULTS SITE...``: RESULTS is the file descriptor of the
+answers, each SITE a folder of packages; requests come from standard input. It imports nothing of radiokit but
+the files that lie beside it. What it says is not believed: the sandbox checks every answer.
 """
 
 from __future__ import annotations
@@ -22,12 +22,15 @@ HIGH = 40
 """The first file descriptor tried for the private pipes."""
 
 
-def _module(name: str, file: Path) -> Any:
-    spec = importlib.util.spec_from_file_location(name, file)
+def _beside(name: str) -> Any:
+    """Import a file that lies beside this one, under a name that no submission has."""
+    spec = importlib.util.spec_from_file_location(
+        f"_{name}", Path(__file__).resolve().with_name(f"{name}.py")
+    )
     if spec is None or spec.loader is None:
-        raise ImportError(f"cannot import {file.name}")
+        raise ImportError(f"cannot import {name}")
     module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
+    sys.modules[f"_{name}"] = module
     spec.loader.exec_module(module)
     return module
 
@@ -39,15 +42,22 @@ def _private(descriptor: int) -> int:
     return moved
 
 
+class _RowError(Exception):
+    """Tells at which row a function raised what."""
+
+    def __init__(self, row: int, error: BaseException) -> None:
+        self.row, self.error = row, error
+
+
 class _Child:
     """Reads requests, calls functions, writes answers; holds what it needs before the submission runs."""
 
-    def __init__(self, numpy: Any, protocol: Any, requests: int, results: int) -> None:
-        self._asarray, self._stack = numpy.asarray, numpy.stack
-        self._protocol, self._requests, self._results = protocol, requests, results
-        self._pack, self._text = protocol.pack, protocol.plain_text
+    def __init__(self, requests: int, results: int) -> None:
+        self._protocol, self._loading, self._answers = map(_beside, ("protocol", "loading", "answers"))
+        self._requests, self._results = requests, results
+        self._pack, self._text = self._protocol.pack, self._protocol.plain_text
         self._read, self._write = os.read, os.write
-        self._module: Any = None
+        self._submission: Any = None
 
     def send(self, header: dict[str, Any], arrays: Any = ()) -> None:
         data = memoryview(self._pack(header, arrays))
@@ -63,73 +73,95 @@ class _Child:
                     return
                 whole.feed(data)
             request, arrays = whole.message()
+            values: Any = ()
             try:
                 header, values = self._answer(request, arrays)
-                self._flush()
-                self.send({"id": request["id"], **header}, values)
+            except self._answers.RefusedError as error:
+                header = {"refused": self._text(error, 1200)}
+            except _RowError as error:
+                header = {**self._raised(error.error), "row": error.row}
             except BaseException as error:  # the submission may raise anything, SystemExit too
-                text = self._described(error)
-                self._flush()
-                self.send({"id": request["id"], "error": text, "type": self._text(type(error).__name__)})
+                header = self._raised(error)
+            self._flush()
+            self.send({"id": request["id"], **header}, values)
 
     def _flush(self) -> None:
         with contextlib.suppress(BaseException):
             sys.stdout.flush()
             sys.stderr.flush()
 
-    def _described(self, error: BaseException) -> str:
-        try:
-            return str(self._text(error))
-        except BaseException:
-            return "its message cannot be read"
+    def _raised(self, error: BaseException) -> dict[str, Any]:
+        return {
+            "error": self._text(self._loading.told(error), 1200),
+            "type": self._text(type(error).__name__),
+            "where": self._submission.where(error.__traceback__) if self._submission else "",
+        }
 
     def _answer(self, request: dict[str, Any], arrays: list[Any]) -> tuple[dict[str, Any], list[Any]]:
-        file = Path.cwd() / request["file"]
-        if self._module is None:
-            sys.path.insert(0, str(file.parent))
-            self._module = _module("submission", file)
-        found: Any = self._module
+        if "load" in request:
+            file = Path.cwd() / request["file"]
+            sys.path.append(str(file.parent))
+            self._loading.prepare()
+            _seed(0)
+            self._submission = self._loading.Submission(file)
+            self._submission.run(seconds=request["load"])
+            return {
+                "names": [self._text(name, 60) for name in self._submission.names()],
+                "problems": [
+                    {key: self._text(words, 240) for key, words in each.items()}
+                    for each in self._submission.problems
+                ],
+            }, []
+        found: Any = self._submission.module
         for part in request["function"].split("."):
             found = getattr(found, part, None)
         if request.get("facts"):
-            return {"facts": _facts(found), "names": _names(self._module)}, []
+            return {"facts": _facts(found)}, []
         if found is None:
             return {"refused": f"defines no function {request['function']!r}"}, []
         if not callable(found):
             return {"refused": f"defines {request['function']}, which is no function"}, []
-        arrays = [array.copy() for array in arrays]  # may be written into
-        mode, keywords = request["mode"], request["parameters"]
-        if mode == "batch":
-            return self._numbers(found(*arrays, **keywords))
-        rows = [
-            self._asarray(
-                found(*(array[i if mode == "row" else slice(i, i + 1)] for array in arrays), **keywords)
-            )
-            for i in range(len(arrays[0]))
-        ]
-        return self._numbers(self._stack([row.reshape(-1) for row in rows]))
+        if request["seed"] is not None:
+            _seed(request["seed"])
+        return {}, self._called(found, request, arrays)
 
-    def _numbers(self, result: Any) -> tuple[dict[str, Any], list[Any]]:
-        """Return the answer's arrays: one, or those of a tuple that is not one array."""
-        if result is None:
-            return {"refused": "returned None: is a return statement missing?"}, []
-        values = [result]
-        if isinstance(result, tuple):
+    def _called(self, function: Any, request: dict[str, Any], arrays: list[Any]) -> list[Any]:
+        # copies may be written into; arrays without dimensions are Python's own numbers
+        given = [array.copy() if array.ndim else array.item() for array in arrays]
+        mode, keywords, outputs = request["mode"], request["parameters"], request["outputs"]
+        taker = self._answers.Taker(request["limit"])
+        lengths = [len(array) for array in arrays if array.ndim]
+        if mode == "batch" or not lengths:
+            return list(taker.outputs(function(*given, **keywords), outputs))
+        rows = []
+        for i in range(lengths[0]):
+            row = [
+                _row(value, i, mode) if array.ndim else value
+                for value, array in zip(given, arrays, strict=True)
+            ]
             try:
-                values = [self._asarray(result)]
-            except ValueError:
-                values = list(result)
-        arrays = []
-        for value in values:
-            array = self._asarray(value)
-            if array.dtype.kind not in "fiubc":
-                kind = self._text(type(value).__name__, 60)
-                return {"refused": f"returned {kind} that is no array of numbers"}, []
-            small = {"f": "<f8", "i": "<i8", "u": "<i8", "b": "|b1", "c": "<c16"}[array.dtype.kind]
-            if array.dtype.kind == "f" and array.dtype.itemsize <= 4:
-                small = "<f4"
-            arrays.append(self._asarray(array, dtype=small))
-        return {}, arrays
+                rows.append(taker.outputs(function(*row, **keywords), outputs))
+            except self._answers.RefusedError:
+                raise
+            except BaseException as error:
+                raise _RowError(i, error) from None
+        return list(taker.stacked(rows, outputs, mode == "single"))
+
+
+def _row(array: Any, i: int, mode: str) -> Any:
+    if mode == "single":
+        return array[i : i + 1]
+    return array[i].item() if mode == "scalar" and array.ndim == 1 else array[i]
+
+
+def _seed(seed: int) -> None:
+    """Set the state of the random numbers that belong to nobody."""
+    import random
+
+    import numpy.random
+
+    random.seed(seed)
+    numpy.random.seed(seed % (1 << 32))  # noqa: NPY002 - submissions use it
 
 
 def _facts(function: Any) -> dict[str, Any]:
@@ -144,20 +176,11 @@ def _facts(function: Any) -> dict[str, Any]:
     }
 
 
-def _names(module: Any) -> list[str]:
-    found = vars(module).items()
-    mine = [name for name, value in found if getattr(value, "__module__", "") == "submission"]
-    return [name for name in mine if not name.startswith("_")][:50]
-
-
 def _main() -> None:
-    here = Path(__file__).resolve()
-    sys.path.append(sys.argv[1])
-    requests, results = _private(0), _private(int(sys.argv[2]))
+    requests, results = _private(0), _private(int(sys.argv[1]))
+    sys.path += sys.argv[2:]
     os.open(os.devnull, os.O_RDONLY)  # becomes standard input
-    import numpy
-
-    child = _Child(numpy, _module("_protocol", here.with_name("protocol.py")), requests, results)
+    child = _Child(requests, results)
     child.send({"ready": json.loads(os.environ.pop("SANDBOX", "[]"))})
     sys.argv = [""]
     child.serve()

@@ -102,18 +102,21 @@ def _give_up_rights(spec: dict[str, Any], home: str, own_users: bool) -> list[st
     return done
 
 
-def _start(spec: dict[str, Any], files: dict[str, bytes], own_users: bool, active: list[str]) -> NoReturn:
+def _start(
+    spec: dict[str, Any], files: dict[str, dict[str, bytes]], own_users: bool, active: list[str]
+) -> NoReturn:
     """Become the child."""
     os.setsid()
     inside = "root" in active
     box = "/box" if inside else spec["box"]
     home = "/home" if inside else f"{box}/home"
-    Path(home).mkdir(parents=True, exist_ok=True)
-    for name, data in files.items():
-        target = Path(box if name in ("child.py", "protocol.py") else home, name)
-        target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_bytes(data)
-        target.chmod(0o444)
+    for place in (box, home):
+        Path(place).mkdir(exist_ok=True)
+    for place, kind in ((box, "programs"), (home, "files")):
+        for name, data in files[kind].items():
+            target = Path(place, name)
+            target.write_bytes(data)
+            target.chmod(0o444)
     Path(home).chmod(0o755)
     uid = spec["uid"] if os.geteuid() == 0 else os.getuid()
     release = tuple(int(part) for part in os.uname().release.split("-")[0].split(".")[:2] if part.isdigit())
@@ -133,12 +136,16 @@ def _start(spec: dict[str, Any], files: dict[str, bytes], own_users: bool, activ
         "TMPDIR": home,
         "PATH": "/usr/bin:/bin",
         "LANG": "C.UTF-8",
+        "TZ": "UTC",
+        "USER": "student",
+        "MPLBACKEND": "Agg",
+        "PYTHONHASHSEED": "0",
         "OMP_NUM_THREADS": "1",
         "OPENBLAS_NUM_THREADS": "1",
         "MKL_NUM_THREADS": "1",
         "SANDBOX": json.dumps(active),
     }
-    words = [spec["python"], "-I", "-B", f"{box}/child.py", spec["site"], str(spec["results"])]
+    words = [spec["python"], "-P", "-s", "-S", "-B", f"{box}/child.py", str(spec["results"]), *spec["sites"]]
     os.execve(spec["python"], words, environment)
 
 
@@ -195,7 +202,7 @@ def _fail(error: Exception) -> NoReturn:
     os._exit(FAILED)
 
 
-def _inside(spec: dict[str, Any], files: dict[str, bytes], own_users: bool) -> NoReturn:
+def _inside(spec: dict[str, Any], files: dict[str, dict[str, bytes]], own_users: bool) -> NoReturn:
     """Be the first process of the namespaces: when it ends, all of them end."""
     namespaces.control(namespaces.PR_SET_PDEATHSIG, int(signal.SIGKILL))
     try:
@@ -212,7 +219,11 @@ def _main() -> None:
     spec = json.loads(sys.argv[1])
     os.umask(0o022)
     os.set_inheritable(spec["results"], True)
-    files = {name: Path(path).read_bytes() for name, path in spec["files"].items()}
+    files = {
+        kind: {name: Path(path).read_bytes() for name, path in spec[kind].items()}
+        for kind in ("programs", "files")
+    }
+    spec["given"] = sum(len(data) + 4096 for data in files["files"].values())
     spec["threads"] = {str(uid): _threads(uid) for uid in {os.getuid(), spec["uid"]}}
     reaper = namespaces.control(namespaces.PR_SET_CHILD_SUBREAPER, 1)
     try:

@@ -23,12 +23,14 @@ PROTECTIONS = {
 
 @dataclass(frozen=True, kw_only=True)
 class Limits:
-    """What the code in a sandbox may use; all positive integers but ``seconds``.
+    """What the code in a sandbox may use; all positive integers but wall times.
 
     Parameters
     ----------
     seconds : float
-        Wall time of one call, the first one's import included [s], above 0.
+        Wall time of one call [s], above 0.
+    load_seconds : float
+        Wall time of loading the submission, each time that it must be loaded [s], above 0.
     cpu_seconds : int
         Processor time of one child over all its calls [s].
     memory_bytes : int
@@ -40,7 +42,7 @@ class Limits:
     file_bytes : int
         Size of each file.
     disk_bytes : int
-        Size of all files together, where the file system is the sandbox's own.
+        Size of all files that it writes, where the file system is the sandbox's own.
     inodes : int
         Number of files, likewise; at least 1024.
     printed_bytes : int
@@ -60,6 +62,7 @@ class Limits:
     """
 
     seconds: float = 10.0
+    load_seconds: float = 20.0
     cpu_seconds: int = 3600
     memory_bytes: int = 1 << 31
     processes: int = 16
@@ -74,8 +77,8 @@ class Limits:
         least = {"open_files": 64, "inodes": 1024}
         for field in dataclasses.fields(self):
             value = getattr(self, field.name)
-            if field.name == "seconds":
+            if field.name.endswith("seconds") and field.name != "cpu_seconds":
                 if not (isinstance(value, int | float) and 0 < value < float("inf")):
-                    raise ParameterError("seconds", value, "a finite number above 0")
+                    raise ParameterError(field.name, value, "a finite number above 0")
             elif type(value) is not int or value < least.get(field.name, 1):
                 raise ParameterError(field.name, value, f"an integer of at least {least.get(field.name, 1)}")

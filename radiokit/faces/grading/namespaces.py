@@ -86,7 +86,9 @@ def new_root(spec: dict[str, Any]) -> bool:
     """Make the box the root: of the old one only what is visible, to read; return whether /proc is there."""
     box = spec["box"]
     _mount("none", "/", "none", MS_REC | MS_PRIVATE)
-    size = f"size={spec['limits']['disk_bytes']},nr_inodes={spec['limits']['inodes']},mode=755"
+    size = (
+        f"size={spec['limits']['disk_bytes'] + spec['given']},nr_inodes={spec['limits']['inodes']},mode=755"
+    )
     _mount("tmpfs", box, "tmpfs", MS_NOSUID | MS_NODEV, size)
     for path in spec["visible"]:
         source, target = Path(path), Path(box + path)

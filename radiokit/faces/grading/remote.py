@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -80,11 +80,13 @@ def remote_bsdf(sandbox: Sandbox, function: str, *, parameters: Mapping[str, Any
     found = sandbox.facts(function)
     if not found.ok:
         raise TargetError(f"the submission {found.error}")
-    facts, names = found.facts, found.facts["names"]
+    facts = found.facts
     if not facts["callable"]:
+        loaded = sandbox.load().facts
+        names = loaded["names"]
         raise TargetError(
             f"the submission has no function {function!r}{suggestion(function, names) or '.'} "
-            f"It defines: {', '.join(names) or 'no function'}"
+            f"It defines: {', '.join(names) or 'no function'}" + _first(loaded["problems"])
         )
     given = dict(parameters or {})
     extra = {
@@ -112,9 +114,19 @@ def remote_bsdf(sandbox: Sandbox, function: str, *, parameters: Mapping[str, Any
     )
 
 
+def _first(problems: Sequence[Mapping[str, str]]) -> str:
+    """Return the first of a submission's problems as the end of a sentence."""
+    if not problems:
+        return ""
+    words = (problems[0][name] for name in ("where", "raised", "message"))
+    return f" ({': '.join(word for word in words if word)})"
+
+
 @contextmanager
 def open_isolated(target: str, parameters: Mapping[str, Any], limits: Limits | None = None) -> Iterator[BSDF]:
     """Open a sandbox for ``file.py:function``, and yield the function as a BSDF; the file must stand alone.
+
+    It may be a notebook too, ``file.ipynb:function``.
 
     Raises
     ------
@@ -122,7 +134,7 @@ def open_isolated(target: str, parameters: Mapping[str, Any], limits: Limits | N
         When the target is no function in a file.
     """
     path, colon, name = target.rpartition(":")
-    if not colon or Path(path).suffix != ".py":
+    if not colon or Path(path).suffix not in (".py", ".ipynb"):
         raise TargetError(f"cannot isolate {target!r}: only file.py:function is run in a sandbox")
     if not Path(path).is_file():
         raise TargetError(f"no such file: {path}")

@@ -1,8 +1,13 @@
-"""Results: what became of a call in a sandbox, as far as the child's answer can be believed."""
+"""Results: what became of a request to a sandbox, as far as the child's answer can be believed.
+
+Their words go into feedback: what differs from run to run, as addresses and the sandbox's folder, is taken
+out.
+"""
 
 from __future__ import annotations
 
 import dataclasses
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -10,7 +15,11 @@ from typing import Any
 from radiokit.faces.grading.limits import PROTECTIONS
 from radiokit.faces.grading.protocol import Array, MalformedError, plain_text
 
-__all__ = ["Result", "judged"]
+__all__ = ["Result", "judged", "steady"]
+
+NAMES = 60
+PROBLEMS = 20
+_PLACE = re.compile(r"(cell \d{1,6})?(, )?(line \d{1,7})?")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,14 +28,18 @@ class Result:
 
     ``values`` are the arrays that came back, of real or complex numbers, and empty where ``error`` says in
     one line what the function did instead, as in "took longer than 1 s". ``raised`` is the exception's type
-    where it raised one. ``output`` is the beginning of what it printed. ``protections`` were active during
-    the call, ``missing`` were not, see ``PROTECTIONS``. ``seconds`` is wall time, a child's start included.
-    ``facts`` are what ``Sandbox.facts`` asked for.
+    where it raised one, ``where`` the last place in the submission that it came through, as in "line 12" or
+    "cell 3, line 2", and ``row`` the row that was at hand, where the function was called row by row.
+    ``output`` is the beginning of what it printed. ``protections`` were active during the call, ``missing``
+    were not, see ``PROTECTIONS``. ``seconds`` is wall time, a child's start included. ``facts`` are what
+    ``Sandbox.load`` and ``Sandbox.facts`` asked for.
     """
 
     values: tuple[Array, ...] = ()
     error: str = ""
     raised: str = ""
+    where: str = ""
+    row: int | None = None
     seconds: float = 0.0
     output: str = ""
     protections: tuple[str, ...] = ()
@@ -43,30 +56,78 @@ class Result:
         return tuple(name for name in PROTECTIONS if name not in self.protections)
 
 
-def judged(header: dict[str, Any], values: list[Array], token: str) -> dict[str, Any]:
+def steady(text: str, folder: str = "") -> str:
+    """Return a text without what differs from run to run: addresses, process and user ids, temporary names.
+
+    >>> steady("<f at 0x7f3a5c2b1d90> of pid 4711 in /tmp/radiokit-a1b2/home/x.py", "/tmp/radiokit-a1b2")
+    '<f at 0x…> of pid … in /home/x.py'
+    """
+    if folder:
+        text = text.replace(folder, "")
+    text = re.sub(r"\b0x[0-9a-fA-F]{6,}\b", "0x…", text)
+    text = re.sub(r"\b([pug]id\W{1,3})\d+", r"\1…", text, flags=re.IGNORECASE)
+    return re.sub(r"/tmp[a-z0-9_]{8}\b", "/tmp…", text)
+
+
+def judged(
+    header: dict[str, Any], values: list[Array], token: str, *, outputs: int = 1, folder: str = ""
+) -> dict[str, Any]:
     """Return a result's fields from an answer of unknown honesty."""
+
+    def words(text: object, limit: int = 300) -> str:
+        return plain_text(steady(plain_text(text, 1200), folder), limit)
+
     if header.get("id") != token:
         raise MalformedError("it answers what was not asked")
     if "error" in header:
-        raised = plain_text(header.get("type", "Exception"), 60)
-        text = plain_text(header["error"])
-        return {"error": f"raised {raised}: {text}" if text else f"raised {raised}", "raised": raised}
+        raised, text, row = (
+            words(header.get("type", "Exception"), 60),
+            words(header["error"]),
+            header.get("row"),
+        )
+        return {
+            "error": f"raised {raised}: {text}" if text else f"raised {raised}",
+            "raised": raised,
+            "where": _place(header.get("where")),
+            "row": row if type(row) is int and 0 <= row < 1 << 40 else None,
+        }
     if "refused" in header:
-        return {"error": plain_text(header["refused"]) or "refused"}
+        return {"error": words(header["refused"]) or "refused"}
+    if "problems" in header:
+        names, problems = header.get("names"), header["problems"]
+        if not isinstance(names, list) or not isinstance(problems, list):
+            raise MalformedError("its problems are none")
+        kept = [each for each in problems[:PROBLEMS] if isinstance(each, dict)]
+        return {
+            "facts": {
+                "names": [words(name, 60) for name in names[:NAMES]],
+                "problems": [
+                    {
+                        "where": _place(each.get("where")),
+                        "raised": words(each.get("raised", ""), 60),
+                        "message": words(each.get("message", "")),
+                    }
+                    for each in kept
+                ],
+            }
+        }
     if "facts" in header:
-        return {"facts": _facts(header)}
-    if not values:
-        raise MalformedError("it has neither values nor an error")
+        return {"facts": _facts(header["facts"])}
+    if not values or outputs not in (1, len(values)):
+        raise MalformedError("it has neither values nor an error" if not values else "values are missing")
     return {"values": tuple(values)}
 
 
-def _facts(header: dict[str, Any]) -> dict[str, Any]:
-    found, names = header["facts"], header.get("names")
-    if not isinstance(found, dict) or not isinstance(names, list):
+def _place(where: object) -> str:
+    text = plain_text(where, 60)
+    return text if _PLACE.fullmatch(text) else ""
+
+
+def _facts(found: Any) -> dict[str, Any]:
+    if not isinstance(found, dict):
         raise MalformedError("its facts are none")
     eta = found.get("eta")
     return {
         **{name: found.get(name) is True for name in ("callable", "pdf", "sample", "transmissive")},
         "eta": float(eta) if isinstance(eta, int | float) else None,
-        "names": [plain_text(name, 60) for name in names[:50]],
     }

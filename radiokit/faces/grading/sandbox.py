@@ -1,47 +1,44 @@
-"""The sandbox: the parent's side: starts the child, asks it, doubts its answers, and ends it."""
+"""The sandbox: the parent's side: starts a child, asks it, doubts its answers, and ends it."""
 
 from __future__ import annotations
 
-import contextlib
-import dataclasses
-import json
 import os
 import secrets
-import selectors
-import shutil
-import signal
-import subprocess
 import sys
-import tempfile
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import TracebackType
-from typing import IO, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
+import numpy.typing as npt
 
-import radiokit
 from radiokit.faces.grading.limits import PROTECTIONS, Limits
-from radiokit.faces.grading.protocol import Array, Assembler, MalformedError, pack, plain_text
+from radiokit.faces.grading.process import ChildProcess, LateError, StoppedError
+from radiokit.faces.grading.protocol import ARRAYS, Array, MalformedError, pack, plain_text
 from radiokit.faces.grading.result import Result, judged
-from radiokit.facts.errors import RadiokitError
+from radiokit.facts.errors import ParameterError, RadiokitError
 
 __all__ = ["Sandbox"]
 
-HERE = Path(__file__).resolve().parent
 STARTUP = 30.0
 """How long Python and NumPy may take to start [s]."""
-KEPT = 2000
-"""How many bytes of what is printed are kept."""
-SYSTEM = (
-    *("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/nix/store", "/gnu/store", "/etc/ld.so.cache"),
-    *("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom"),
-)
+LARGEST = 1 << 28
+"""Files of more bytes are no submission."""
+ENDING = 1.0
+"""What is left to a child to say that it came to the end of its time [s]."""
 
 
-class _StoppedError(Exception):
-    """The child cannot be asked again; the message says why."""
+@dataclass
+class _Budget:
+    """Wall time that calls share; the first loading within it is free."""
+
+    seconds: float
+    left: float
+    loaded: bool = False
 
 
 class Sandbox:
@@ -49,12 +46,14 @@ class Sandbox:
 
     Each call costs at most its time limit: a child that hangs, dies or answers nonsense is ended with all its
     descendants, and the next call starts another. Which walls there are is found by trying. The file is
-    copied: what lies beside it is not there unless it is named in ``files``. Not for several threads at once.
+    copied: what lies beside it is not there unless it is named in ``files``. It is run statement by
+    statement, and what raises costs itself alone; it is the module ``submission``, and not ``__main__``.
+    Python's hashes are fixed. Not for several threads at once.
 
     Parameters
     ----------
     path : str or Path
-        The submission, a Python file.
+        The submission, a Python file or a Jupyter notebook.
     limits : Limits, optional
     files : sequence of str or Path, optional
         Further files for the submission's folder.
@@ -64,8 +63,9 @@ class Sandbox:
     Raises
     ------
     RadiokitError
-        When a file is not there, or no child can be started.
+        When a file is not there or too large, or no child can be started.
 
+    >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = Path(folder, "theirs.py")
     ...     _ = file.write_text("def double(x): return 2 * x")
@@ -92,14 +92,14 @@ class Sandbox:
         for file in self._files.values():
             if not Path(file).is_file():
                 raise RadiokitError(f"no such file: {file}")
+            if Path(file).stat().st_size > LARGEST:
+                raise RadiokitError(f"{file} has more than {LARGEST} bytes")
         self._levels = [True, False] if namespaces and sys.platform == "linux" else [False]
-        self._process: subprocess.Popen[bytes] | None = None
+        self._child: ChildProcess | None = None
         self._protections: tuple[str, ...] = ()
-        self._requests = self._results = -1
-        self._streams: tuple[IO[bytes], ...] = ()
-        self._box = ""
-        self._output = bytearray()
-        self._printed = 0
+        self._loaded: Result | None = None
+        self._budgets: list[_Budget] = []
+        self._output = ""
 
     def __enter__(self) -> Sandbox:
         return self
@@ -109,24 +109,59 @@ class Sandbox:
     ) -> None:
         self.close()
 
+    def load(self, timeout: float | None = None) -> Result:
+        """Start a child and load the submission, if that is still to be done.
+
+        A statement may take half of the time that is left; then it is stopped, and the next one begins.
+
+        Parameters
+        ----------
+        timeout : float, optional
+            Wall time [s]; ``limits.load_seconds`` by default.
+
+        Returns
+        -------
+        Result
+            Its ``facts`` have ``names``, of the functions and classes that the submission defines, in order,
+            and ``problems``, a list of {where, raised, message}; ``raised`` is empty where nothing was.
+        """
+        if self._child is None or self._loaded is None or self._loaded.error:
+            seconds = self.limits.load_seconds if timeout is None else timeout
+            began = time.monotonic()
+            self._loaded = self._request(
+                {"load": seconds}, (), seconds + ENDING, f"took longer than {seconds:g} s"
+            )
+            for budget in self._budgets:
+                budget.left -= time.monotonic() - began if budget.loaded else 0.0
+                budget.loaded = True
+        return self._loaded
+
     def call(
         self,
         function: str,
-        *arrays: Array,
-        mode: Literal["batch", "single", "row"] = "batch",
+        *arrays: npt.ArrayLike,
+        mode: Literal["batch", "single", "row", "scalar"] = "batch",
+        outputs: int = 1,
+        seed: int | None = None,
         parameters: Mapping[str, Any] | None = None,
         timeout: float | None = None,
     ) -> Result:
-        """Call a function with arrays.
+        """Call a function with arrays; the submission is loaded first, where it is not, for its own time.
 
         Parameters
         ----------
         function : str
             Its name; dots lead to attributes.
-        *arrays : ndarray
-            Its positional arguments, of numbers.
-        mode : {"batch", "single", "row"}
-            Whether it is handed the arrays at once, row by row as arrays of one row, or row by row.
+        *arrays : array_like
+            Its positional arguments, of numbers, at most 8; those without dimensions arrive as int, float,
+            complex or bool.
+        mode : {"batch", "single", "row", "scalar"}
+            Whether it is handed the arrays at once, row by row as arrays of one row, or row by row; with
+            "scalar" the rows of arrays of one dimension arrive as Python's numbers.
+        outputs : int, optional
+            How many values it must return, 1 to 8; if several, as a tuple or list.
+        seed : int, optional
+            What the generators of ``random`` and ``numpy.random`` are seeded with before, at least 0.
         parameters : dict, optional
             Its keyword arguments, as far as JSON carries them.
         timeout : float, optional
@@ -136,49 +171,89 @@ class Sandbox:
         -------
         Result
             Whatever the function does; nothing that it does is raised here.
+
+        Raises
+        ------
+        ParameterError
+            When the arguments are not of these kinds.
         """
-        return self._request(function, arrays, timeout, mode=mode, parameters=dict(parameters or {}))
+        if type(outputs) is not int or not 1 <= outputs <= ARRAYS:
+            raise ParameterError("outputs", outputs, f"an integer from 1 to {ARRAYS}")
+        if seed is not None and (type(seed) is not int or seed < 0):
+            raise ParameterError("seed", seed, "an integer of at least 0")
+        given = [_carried(array) for array in arrays]
+        if mode != "batch" and len({len(array) for array in given if array.ndim}) > 1:
+            raise ParameterError("arrays", [array.shape for array in given], "arrays of equally many rows")
+        return self._called(
+            {
+                "function": function,
+                "mode": mode,
+                "outputs": outputs,
+                "seed": seed,
+                "parameters": dict(parameters or {}),
+                "limit": self.limits.answer_bytes,
+            },
+            given,
+            timeout,
+        )
 
     def facts(self, function: str) -> Result:
         """Ask what a function says of itself: ``facts`` has callable, pdf, sample, transmissive, eta."""
-        return self._request(function, (), None, facts=True)
+        return self._called({"function": function, "facts": True}, (), None)
+
+    @contextmanager
+    def within(self, seconds: float) -> Iterator[None]:
+        """Let all calls inside share this wall time [s]; a first loading, and what is between, are free."""
+        if not 0 < seconds < float("inf"):
+            raise ParameterError("seconds", seconds, "a finite number above 0")
+        self._budgets.append(_Budget(seconds, seconds))
+        try:
+            yield
+        finally:
+            self._budgets.pop()
 
     def close(self) -> None:
         """End the child and all its descendants, and remove what it wrote."""
-        process, self._process = self._process, None
-        if process is None:
-            return
-        for descriptor in (self._requests, self._results):
-            os.close(descriptor)
-        with contextlib.suppress(ProcessLookupError):
-            process.send_signal(signal.SIGTERM)  # the launcher then kills all
-        try:
-            process.wait(5)
-        except subprocess.TimeoutExpired:
-            with contextlib.suppress(ProcessLookupError):
-                os.killpg(process.pid, signal.SIGKILL)
-            process.wait()
-        for stream in self._streams:
-            stream.close()
-        _remove(self._box)
+        child, self._child = self._child, None
+        if child is not None:
+            self._output = child.printed()
+            child.close()
 
-    def _request(
-        self, function: str, arrays: tuple[Array, ...], timeout: float | None, **request: Any
-    ) -> Result:
+    def _called(self, request: dict[str, Any], arrays: Sequence[Array], timeout: float | None) -> Result:
         began = time.monotonic()
-        self._output.clear()
-        self._printed = 0
+        seconds = self.limits.seconds if timeout is None else timeout
+        late = f"took longer than {seconds:g} s"
+        if self._child is None or self._loaded is None:
+            failed = self._loaded is not None and bool(self._loaded.error)  # then it would fail again
+            loaded = self._loaded if failed and self._loaded is not None else self.load()
+            if loaded.error:
+                return Result(error=f"could not be loaded: it {loaded.error}", protections=self._protections)
+        for budget in self._budgets:
+            if budget.left < seconds:
+                seconds, late = budget.left, f"took longer than {budget.seconds:g} s in all"
+        if seconds <= 0:
+            return Result(error=late, protections=self._protections)
+        asked = time.monotonic()
+        result = self._request(request, arrays, seconds, late)
+        for budget in self._budgets:
+            budget.left -= time.monotonic() - asked
+        return replace(result, seconds=time.monotonic() - began)
+
+    def _request(self, request: dict[str, Any], arrays: Sequence[Array], seconds: float, late: str) -> Result:
+        """Ask the child, and return what becomes of it."""
+        began = time.monotonic()
         found: dict[str, Any] = {}
         try:
-            if self._process is None:
-                self._start()
+            child = self._child = self._child or self._started()
             token = secrets.token_hex(8)
-            asked = pack({"id": token, "file": self._name, "function": function, **request}, arrays)
-            header, values = self._exchange(asked, self.limits.seconds if timeout is None else timeout)
-            found = judged(header, values, token)
-        except (_StoppedError, MalformedError) as error:
+            asked = pack({"id": token, "file": self._name, **request}, arrays)
+            header, values = child.exchange(asked, seconds)
+            found = judged(header, values, token, outputs=request.get("outputs", 1), folder=child.folder)
+            self._output = child.printed()
+        except (StoppedError, MalformedError) as error:
             malformed = isinstance(error, MalformedError)
             found = {"error": f"gave an answer that is not believed: {error}" if malformed else str(error)}
+            found = {"error": late} if isinstance(error, LateError) else found
             self.close()
         except BaseException:
             self.close()
@@ -186,143 +261,36 @@ class Sandbox:
         return Result(
             **found,
             seconds=time.monotonic() - began,
-            output=bytes(self._output).decode(errors="replace"),
+            output=self._output,
             protections=self._protections,
         )
 
-    def _start(self) -> None:
-        """Start a child behind the highest walls that can be built."""
+    def _started(self) -> ChildProcess:
+        """Return a child behind the highest walls that can be built."""
         told = ""
-        while self._levels:
-            self._spawn(self._levels[0])
+        while True:
+            child = ChildProcess(self.limits, self._files, namespaces=self._levels[0])
             try:
-                header, _ = self._exchange(b"", STARTUP)
-                ready = header.get("ready")
+                ready = child.exchange(b"", STARTUP)[0].get("ready")
                 if isinstance(ready, list):
                     self._protections = tuple(name for name in PROTECTIONS if name in ready)
-                    return
-            except (_StoppedError, MalformedError) as error:
-                told = plain_text(f"{error} {bytes(self._output).decode(errors='replace')}")
-            self.close()
-            self._output.clear()
-            self._printed = 0
+                    return child
+                told = "it is not ready"
+            except (StoppedError, MalformedError) as error:
+                told = plain_text(f"{error} {child.printed()}")
+            except BaseException:
+                child.close()
+                raise
+            child.close()
             if len(self._levels) == 1:
-                break
+                raise RadiokitError(f"no sandbox can be started here: {told}")
             self._levels.pop(0)
-        raise RadiokitError(f"no sandbox can be started here: {told}")
-
-    def _spawn(self, namespaces: bool) -> None:
-        self._box = tempfile.mkdtemp(prefix="radiokit-")
-        Path(self._box).chmod(0o755)
-        self._results, results = os.pipe()
-        site = str(Path(np.__file__).resolve().parents[1])
-        python = os.path.realpath(sys.executable)
-        spec = {
-            "box": os.path.realpath(self._box),
-            "namespaces": namespaces,
-            "limits": dataclasses.asdict(self.limits),
-            "python": python,
-            "site": site,
-            "results": results,
-            "uid": 61184 + os.getpid() % 4000,
-            "needs": [python, np.__file__, os.__file__],
-            "files": {
-                "child.py": str(HERE / "child.py"),
-                "protocol.py": str(HERE / "protocol.py"),
-                **self._files,
-            },
-            "visible": [*SYSTEM, os.path.realpath(sys.base_prefix), sys.base_prefix, site],
-            "hidden": [str(Path(folder).resolve()) for folder in radiokit.__path__],
-        }
-        command = [python, "-I", "-B", "-S", str(HERE / "launcher.py"), json.dumps(spec)]
-        try:
-            self._process = process = subprocess.Popen(
-                command,
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE,
-                pass_fds=(results,),
-                start_new_session=True,
-                env={"PATH": "/usr/bin:/bin", "LANG": "C.UTF-8"},
-                cwd="/",
-            )
-        finally:
-            os.close(results)
-        assert process.stdin is not None
-        assert process.stdout is not None
-        assert process.stderr is not None
-        self._requests = os.dup(process.stdin.fileno())
-        process.stdin.close()
-        self._streams = (process.stdout, process.stderr)
-        for descriptor in (self._requests, self._results, *(each.fileno() for each in self._streams)):
-            os.set_blocking(descriptor, False)
-
-    def _exchange(self, request: bytes, seconds: float) -> tuple[dict[str, Any], list[Array]]:
-        """Write a request and read the answer, while what is printed is kept within its bounds."""
-        deadline = time.monotonic() + seconds
-        whole = Assembler(self.limits.answer_bytes)
-        left = memoryview(request)
-        with selectors.DefaultSelector() as selector:
-            for stream in (self._results, *(each.fileno() for each in self._streams)):
-                selector.register(stream, selectors.EVENT_READ)
-            if left:
-                selector.register(self._requests, selectors.EVENT_WRITE)
-            while True:
-                remaining = deadline - time.monotonic()
-                if remaining <= 0:
-                    raise _StoppedError(f"took longer than {seconds:g} s")
-                for key, _ in selector.select(remaining):
-                    if key.fd == self._requests:
-                        try:
-                            left = left[os.write(key.fd, left) :]
-                        except BrokenPipeError:
-                            left = left[len(left) :]
-                        if not left:
-                            selector.unregister(self._requests)
-                        continue
-                    results = key.fd == self._results
-                    data = os.read(key.fd, min(whole.wanted, 1 << 20) if results else 1 << 16)
-                    if not results:
-                        self._keep(data)
-                        if not data:
-                            selector.unregister(key.fd)
-                    elif not data:
-                        raise _StoppedError(self._ending())
-                    else:
-                        whole.feed(data)
-                        if not whole.wanted:
-                            self._drain()
-                            return whole.message()
-
-    def _keep(self, data: bytes) -> None:
-        self._printed += len(data)
-        self._output += data[: max(0, KEPT - len(self._output))]
-        if self._printed > self.limits.printed_bytes:
-            raise _StoppedError(f"printed more than {self.limits.printed_bytes} bytes")
-
-    def _drain(self) -> None:
-        """Keep what was printed until now."""
-        for stream in self._streams:
-            with contextlib.suppress(_StoppedError, BlockingIOError):
-                self._keep(os.read(stream.fileno(), 1 << 16))
-
-    def _ending(self) -> str:
-        """Say how the child came to its end."""
-        assert self._process is not None
-        try:
-            code = self._process.wait(5)
-        except subprocess.TimeoutExpired:
-            return "closed its channel of answers"
-        self._drain()
-        number = -code if code < 0 else code - 128
-        if number in set(signal.Signals):
-            return f"was ended by {signal.Signals(number).name}"
-        return f"ended its process with exit code {code}"
 
 
-def _remove(folder: str) -> None:
-    """Remove a folder of which some parts may have been locked by the one who wrote them."""
-    for place, _, _ in os.walk(folder):
-        with contextlib.suppress(OSError):
-            Path(place).chmod(0o700)
-    shutil.rmtree(folder, ignore_errors=True)
+def _carried(given: npt.ArrayLike) -> Array:
+    """Return an argument as an array of a type that messages carry."""
+    array = np.asarray(given)
+    kind = {"i": "<i8", "u": "<i8", "b": "|b1", "c": "<c16", "f": "<f8"}.get(array.dtype.kind)
+    if kind is None or (array.dtype.kind == "u" and array.size and array.max() > np.iinfo("i8").max):
+        raise ParameterError("arrays", array.dtype, "numbers of at most 64 bits")
+    return array.astype("<f4" if array.dtype == np.float32 else kind)

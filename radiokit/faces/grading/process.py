@@ -1,0 +1,222 @@
+"""The process: a launcher with the child behind it, and the pipes to them, as the parent sees them."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import selectors
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import radiokit
+from radiokit.faces.grading.limits import Limits
+from radiokit.faces.grading.protocol import Array, Assembler
+from radiokit.faces.grading.result import steady
+
+__all__ = ["ChildProcess", "StoppedError"]
+
+HERE = Path(__file__).resolve().parent
+PROGRAMS = ("child", "protocol", "loading", "answers")
+KEPT = 2000
+"""How many characters of what is printed are kept."""
+SYSTEM = (
+    *("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/nix/store", "/gnu/store", "/etc/ld.so.cache"),
+    *("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom"),
+)
+
+
+class StoppedError(Exception):
+    """The child cannot be asked again; the message says why, and has the submission as its subject."""
+
+
+class LateError(StoppedError):
+    """It took longer than it may."""
+
+
+class ChildProcess:
+    """A launcher and the child that it starts behind its walls; ``folder`` is its place in the file system.
+
+    Parameters
+    ----------
+    limits : Limits
+    files : dict
+        What the submission's folder holds: paths by name.
+    namespaces : bool
+        Whether Linux namespaces are asked for; the child does not start where they are not granted.
+    """
+
+    def __init__(self, limits: Limits, files: dict[str, str], *, namespaces: bool) -> None:
+        self._limits = limits
+        self._output = bytearray()
+        self._printed = 0
+        self.folder = os.path.realpath(tempfile.mkdtemp(prefix="radiokit-"))
+        Path(self.folder).chmod(0o755)
+        self._results, results = os.pipe()
+        try:
+            self._process = process = subprocess.Popen(
+                _command(self.folder, limits, files, results, namespaces),
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                pass_fds=(results,),
+                start_new_session=True,
+                env={"PATH": "/usr/bin:/bin", "LANG": "C.UTF-8"},
+                cwd="/",
+            )
+        except BaseException:
+            os.close(self._results)
+            _remove(self.folder)
+            raise
+        finally:
+            os.close(results)
+        assert process.stdin is not None
+        assert process.stdout is not None
+        assert process.stderr is not None
+        self._requests = os.dup(process.stdin.fileno())
+        process.stdin.close()
+        self._streams = (process.stdout, process.stderr)
+        for descriptor in (self._requests, self._results, *(each.fileno() for each in self._streams)):
+            os.set_blocking(descriptor, False)
+
+    def exchange(self, request: bytes, seconds: float) -> tuple[dict[str, Any], list[Array]]:
+        """Write a request and read the answer, while what is printed is kept within its bounds.
+
+        Raises
+        ------
+        StoppedError
+            When the child ends, prints too much, or, as ``LateError``, takes longer.
+        MalformedError
+            When what it says is no answer.
+        """
+        deadline = time.monotonic() + seconds
+        self._printed = 0
+        whole = Assembler(self._limits.answer_bytes)
+        left = memoryview(request)
+        with selectors.DefaultSelector() as selector:
+            for stream in (self._results, *(each.fileno() for each in self._streams)):
+                selector.register(stream, selectors.EVENT_READ)
+            if left:
+                selector.register(self._requests, selectors.EVENT_WRITE)
+            while True:
+                remaining = deadline - time.monotonic()
+                if remaining <= 0:
+                    raise LateError(f"took longer than {seconds:g} s")
+                for key, _ in selector.select(remaining):
+                    if key.fd == self._requests:
+                        try:
+                            left = left[os.write(key.fd, left) :]
+                        except BrokenPipeError:
+                            left = left[len(left) :]
+                        if not left:
+                            selector.unregister(self._requests)
+                        continue
+                    results = key.fd == self._results
+                    data = os.read(key.fd, min(whole.wanted, 1 << 20) if results else 1 << 16)
+                    if not results:
+                        self._keep(data)
+                        if not data:
+                            selector.unregister(key.fd)
+                    elif not data:
+                        raise StoppedError(self._ending())
+                    else:
+                        whole.feed(data)
+                        if not whole.wanted:
+                            self._drain()
+                            return whole.message()
+
+    def printed(self) -> str:
+        """Return the beginning of what was printed since this was asked last."""
+        text = steady(bytes(self._output).decode(errors="replace"), self.folder)
+        self._output.clear()
+        return text[:KEPT]
+
+    def close(self) -> None:
+        """End the child and all its descendants, and remove what it wrote."""
+        for descriptor in (self._requests, self._results):
+            os.close(descriptor)
+        process = self._process
+        with contextlib.suppress(ProcessLookupError):
+            process.send_signal(signal.SIGTERM)  # the launcher then kills all
+        try:
+            process.wait(5)
+        except subprocess.TimeoutExpired:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+        for stream in self._streams:
+            stream.close()
+        _remove(self.folder)
+
+    def _keep(self, data: bytes) -> None:
+        self._printed += len(data)
+        self._output += data[: max(0, 2 * KEPT - len(self._output))]
+        if self._printed > self._limits.printed_bytes:
+            raise StoppedError(f"printed more than {self._limits.printed_bytes} bytes")
+
+    def _drain(self) -> None:
+        """Keep what was printed until now."""
+        for stream in self._streams:
+            with contextlib.suppress(StoppedError, BlockingIOError):
+                self._keep(os.read(stream.fileno(), 1 << 16))
+
+    def _ending(self) -> str:
+        """Say how the child came to its end."""
+        try:
+            code = self._process.wait(5)
+        except subprocess.TimeoutExpired:
+            return "closed its channel of answers"
+        self._drain()
+        number = -code if code < 0 else code - 128
+        if number in set(signal.Signals):
+            return f"was ended by {signal.Signals(number).name}"
+        return f"ended its process with exit code {code}"
+
+
+def _command(folder: str, limits: Limits, files: dict[str, str], results: int, namespaces: bool) -> list[str]:
+    """Return the launcher's command line."""
+    python = os.path.realpath(sys.executable)
+    site = str(Path(np.__file__).resolve().parents[1])
+    visible = [*SYSTEM, os.path.realpath(sys.base_prefix), sys.base_prefix, site]
+    spec = {
+        "box": folder,
+        "namespaces": namespaces,
+        "limits": vars(limits),
+        "python": python,
+        "sites": [site, *_packages(site, visible)],
+        "results": results,
+        "uid": 61184 + os.getpid() % 4000,
+        "needs": [python, np.__file__, os.__file__],
+        "programs": {f"{name}.py": str(HERE / f"{name}.py") for name in PROGRAMS},
+        "files": files,
+        "visible": visible,
+        "hidden": [str(Path(folder).resolve()) for folder in radiokit.__path__],
+    }
+    return [python, "-I", "-B", "-S", str(HERE / "launcher.py"), json.dumps(spec)]
+
+
+def _packages(site: str, visible: Sequence[str]) -> list[str]:
+    """Return the other folders of packages that are in sight."""
+    folders = [os.path.realpath(path) for path in sys.path if path.endswith("-packages")]
+    return [
+        folder
+        for folder in dict.fromkeys(folders)
+        if folder != site and any(folder.startswith(f"{place}/") for place in visible)
+    ]
+
+
+def _remove(folder: str) -> None:
+    """Remove a folder of which some parts may have been locked by the one who wrote them."""
+    for place, _, _ in os.walk(folder):
+        with contextlib.suppress(OSError):
+            Path(place).chmod(0o700)
+    shutil.rmtree(folder, ignore_errors=True)
