@@ -15,5 +15,6 @@ from .question import Part as Part
 from .question import Question as Question
 from .remote import remote_bsdf as remote_bsdf
 from .result import Result as Result
+from .sampler import Sampler as Sampler
 from .sandbox import Sandbox as Sandbox
 from .values import Values as Values

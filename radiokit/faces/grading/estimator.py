@@ -226,7 +226,7 @@ class Estimator:
                 )
             return found(value.text, value.diagnosis, value.confidence)
         if "time" in failing and "variance" not in failing:
-            return found(tell(language, "slow"), "inefficient", 1.0)
+            return found(tell(language, "slow"), "slow", 1.0)
         if self.aspect == "efficiency":
             most = float(
                 np.exp(np.mean(np.log(self._given(self.budget, runs) / self._given(self.uniform, runs))))
@@ -267,7 +267,7 @@ class Estimator:
 
     def _suspected(self, runs: Runs, language: str) -> Iterator[tuple[tuple[Suspicion, ...], bool]]:
         """Yield what explains the means: first among this question's variants, then in the catalogue."""
-        known = {name: values for name, values in _numbers(runs, self.context).items()}
+        known = _numbers(runs, self.context)
         others = {
             name: np.array([float(variant(**inputs)) for inputs in runs.inputs])
             for name, variant in self.variants.items()

@@ -218,8 +218,8 @@ SLIPS: Mapping[str, Words] = {
         "ru": "Часть полусферы никогда не попадает в выборку: азимут должен пробегать все 2π.",
     },
     "uniform-instead": {
-        "en": "These directions are uniform over the hemisphere, not what is asked for.",
-        "ru": "Эти направления равномерны по полусфере, а нужна другая плотность.",
+        "en": "This is uniform over the hemisphere, with the density 1/2π, and not what is asked for.",
+        "ru": "Это равномерное распределение по полусфере с плотностью 1/2π, а нужно другое.",
     },
     "root-forgotten": {
         "en": "The samples crowd at the pole: a square root is missing in the radius, r = √u.",
