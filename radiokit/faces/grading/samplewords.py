@@ -61,7 +61,8 @@ SENTENCES: Mapping[str, Words] = {
     },
     "inefficient": {
         "en": "the variance is {ratio} of what uniform directions give, and at most {most} is asked for",
-        "ru": "дисперсия составляет {ratio} от дисперсии при равномерных направлениях, а требуется не более {most}",
+        "ru": "дисперсия составляет {ratio} от дисперсии при равномерных направлениях, а требуется не более "
+        "{most}",
     },
     "slow": {
         "en": "a sample takes so long that uniform directions give the same error sooner",
@@ -143,13 +144,14 @@ SLIPS: Mapping[str, Words] = {
         "rng = np.random.default_rng(seed), и берите все случайные числа из него.",
     },
     "sample-repeated": {
-        "en": "All samples of a run are the same one: make the generator once, before the loop, not anew for each "
-        "sample.",
+        "en": "All samples of a run are the same one: make the generator once, before the loop, not anew "
+        "for each sample.",
         "ru": "Все отсчёты одного запуска совпадают: создайте генератор один раз, до цикла, а не заново для "
         "каждого отсчёта.",
     },
     "samples-ignored": {
-        "en": "Four times as many samples leave the error as it is: use the number of samples that you are given.",
+        "en": "Four times as many samples leave the error as it is: use the number of samples that you are "
+        "given.",
         "ru": "При вчетверо большем числе отсчётов ошибка не меняется: используйте то число отсчётов, "
         "которое передано.",
     },
@@ -178,8 +180,10 @@ SLIPS: Mapping[str, Words] = {
         "ru": "Ваша стандартная ошибка относится к сумме, σ√N: у среднего она равна σ/√N.",
     },
     "interval-for-error": {
-        "en": "Your standard error is about twice too large, as half of a 95 % interval is: give σ/√N itself.",
-        "ru": "Ваша стандартная ошибка примерно вдвое больше, как полуширина интервала 95 %: нужна сама σ/√N.",
+        "en": "Your standard error is about twice too large, as half of a 95 % interval is: give σ/√N "
+        "itself.",
+        "ru": "Ваша стандартная ошибка примерно вдвое больше, как полуширина интервала 95 %: нужна сама "
+        "σ/√N.",
     },
     "error-zero": {
         "en": "Your standard error is 0, and yet different seeds give different values.",
@@ -205,13 +209,14 @@ SLIPS: Mapping[str, Words] = {
     },
     "u-unused": {
         "en": "One of the two random numbers changes nothing: use u[:, 0] and u[:, 1], each once.",
-        "ru": "Одно из двух случайных чисел ни на что не влияет: используйте u[:, 0] и u[:, 1], каждое один раз.",
+        "ru": "Одно из двух случайных чисел ни на что не влияет: используйте u[:, 0] и u[:, 1], каждое один "
+        "раз.",
     },
     "u-torn": {
         "en": "Neighbouring u give directions far apart: the map from the square to the directions should be "
         "continuous, or stratified samples lose their use.",
-        "ru": "Близким u отвечают далёкие направления: отображение квадрата в направления должно быть непрерывным, "
-        "иначе расслоенная выборка теряет смысл.",
+        "ru": "Близким u отвечают далёкие направления: отображение квадрата в направления должно быть "
+        "непрерывным, иначе расслоенная выборка теряет смысл.",
     },
     "quarter-only": {
         "en": "A part of the hemisphere is never sampled: the azimuth must run over the whole of 2π.",
