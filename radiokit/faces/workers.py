@@ -122,13 +122,35 @@ def _processes(workers: int) -> Iterator[Executor]:
     from concurrent.futures import ProcessPoolExecutor
 
     # Forking a process whose threads hold locks can hang; spawning is the same on every system.
-    executor = ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn"))
+    context = multiprocessing.get_context("spawn")
+    executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_start_worker)
+    others = set(multiprocessing.active_children())
     try:
         yield executor
-    except BaseException:
+    except BaseException as error:
+        if not isinstance(error, Exception):  # an interrupt does not wait for what is running
+            for process in set(multiprocessing.active_children()) - others:
+                process.terminate()
         executor.shutdown(wait=True, cancel_futures=True)
         raise
     executor.shutdown()
+
+
+def _start_worker() -> None:
+    """Leave interrupts, which a terminal sends to all its processes, to the parent; end when it is gone."""
+    import multiprocessing
+    import signal
+    import threading
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+
+    def watch() -> None:
+        parent.join()
+        os._exit(1)
+
+    threading.Thread(target=watch, name="parent", daemon=True).start()
 
 
 @contextmanager
@@ -144,5 +166,5 @@ def _cluster(address: str) -> Iterator[Executor]:
         raise RadiokitError(
             f"no Dask scheduler answers at {address!r}: {error}", scheduler=address
         ) from error
-    with client, client.get_executor() as executor:
+    with client, client.get_executor(pure=False) as executor:  # what failed is run again when it is asked for
         yield executor

@@ -1,4 +1,4 @@
-"""Grading: assignments as data, code that is not trusted apart from what it must not reach, and what it earns."""
+"""Grading: assignments as data, sandboxes for code that is not trusted, and what a submission earns."""
 
 import lazy_loader as _lazy
 

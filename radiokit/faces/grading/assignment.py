@@ -1,13 +1,13 @@
-"""Assignment: a list of questions as data, from a file of an instructor's or among those that radiokit has."""
+"""Assignment: a list of questions as data, from an instructor's file or one that comes with radiokit."""
 
 from __future__ import annotations
 
 import hashlib
-import importlib.util
 import json
-from collections.abc import Mapping
+import sys
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 
@@ -16,7 +16,14 @@ from radiokit.faces.grading.question import Part, Question
 from radiokit.faces.grading.words import Words, words
 from radiokit.facts.errors import ParameterError, TargetError, UnknownNameError
 
-__all__ = ["Assignment", "list_assignments", "load_assignment", "student_rng"]
+__all__ = [
+    "Assignment",
+    "assignment_from_source",
+    "assignment_source",
+    "list_assignments",
+    "load_assignment",
+    "student_rng",
+]
 
 FOLDER = Path(__file__).parent / "assignments"
 
@@ -111,6 +118,22 @@ def load_assignment(target: str | Path | Assignment) -> Assignment:
     """
     if isinstance(target, Assignment):
         return target
+    return assignment_from_source(*assignment_source(target))
+
+
+def assignment_source(target: str | Path) -> tuple[str, str]:
+    """Return the source text and the file name of an assignment, by its name or its file.
+
+    Raises
+    ------
+    UnknownNameError
+        When there is no assignment of that name.
+    TargetError
+        When the file is not there, or is no text.
+
+    >>> assignment_source("radiometry")[1]
+    'radiometry.py'
+    """
     path = Path(target)
     if path.suffix != ".py":
         if str(target) not in list_assignments():
@@ -118,17 +141,35 @@ def load_assignment(target: str | Path | Assignment) -> Assignment:
         path = FOLDER / f"{target}.py"
     if not path.is_file():
         raise TargetError(f"no such file: {path}")
-    module = f"{__package__}.assignments.{path.stem}" if path.parent == FOLDER else f"_assignment_{path.stem}"
-    spec = importlib.util.spec_from_file_location(module, path)
-    assert spec is not None
-    assert spec.loader is not None
-    loaded = importlib.util.module_from_spec(spec)
     try:
-        spec.loader.exec_module(loaded)
+        return path.read_text(encoding="utf-8"), path.name
+    except (OSError, UnicodeDecodeError) as error:
+        raise TargetError(f"{path.name} cannot be read: {error}") from error
+
+
+def assignment_from_source(source: str, file: str = "assignment.py") -> Assignment:
+    """Return the assignment that a source text sets as ``ASSIGNMENT``; ``file`` is what errors call it.
+
+    Raises
+    ------
+    TargetError
+        When the text does not run, or sets no ``ASSIGNMENT``.
+
+    >>> assignment_from_source("x = 1 / 0", "mine.py")
+    Traceback (most recent call last):
+        ...
+    radiokit.facts.errors.TargetError: mine.py raised ZeroDivisionError: division by zero
+    """
+    name = f"_assignment_{hashlib.sha256(source.encode()).hexdigest()[:16]}"
+    module = ModuleType(name)
+    module.__file__ = file
+    sys.modules[name] = module  # where its own dataclasses look for their module
+    try:
+        exec(compile(source, file, "exec", dont_inherit=True), vars(module))
     except Exception as error:
-        raise TargetError(f"{path.name} raised {type(error).__name__}: {error}") from error
-    found: Mapping[str, object] = vars(loaded)
-    assignment = found.get("ASSIGNMENT")
+        del sys.modules[name]
+        raise TargetError(f"{file} raised {type(error).__name__}: {error}") from error
+    assignment = vars(module).get("ASSIGNMENT")
     if not isinstance(assignment, Assignment):
-        raise TargetError(f"{path.name} sets no ASSIGNMENT = rk.grading.Assignment(...)")
+        raise TargetError(f"{file} sets no ASSIGNMENT = rk.grading.Assignment(...)")
     return assignment

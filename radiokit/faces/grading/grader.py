@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -51,6 +51,7 @@ def grade(
     student: str = "",
     secret: str = "",
     language: str = "en",
+    questions: Sequence[str] | None = None,
     earlier: Grade | None = None,
     keep: Callable[[Grade], None] | None = None,
     progress: Callable[[int, int], None] | None = None,
@@ -71,6 +72,8 @@ def grade(
         What makes the inputs unforeseeable; keep it between runs, for they depend on it.
     language : str
         ``"en"`` or ``"ru"``.
+    questions : sequence of str, optional
+        Only these, by their functions' names, as if the assignment had no others.
     earlier : Grade, optional
         An incomplete grade of the same submission: its questions are not graded again.
     keep : callable, optional
@@ -87,9 +90,12 @@ def grade(
     Raises
     ------
     RadiokitError
-        When the assignment or the submission is not there, or no sandbox can be started.
+        When the assignment, a question or the submission is not there, or no sandbox can be started.
     """
     work = load_assignment(assignment)
+    if questions is not None:
+        wanted = {work.question(name).name for name in questions}
+        work = replace(work, questions=tuple(each for each in work.questions if each.name in wanted))
     checked_language(language)
     done = {question.name: question for question in earlier.questions} if earlier is not None else {}
     grades: list[QuestionGrade] = []
@@ -185,7 +191,10 @@ def _graded(question: Question, found: Mapping[str, Finding], review: str, langu
 def _problems(loaded: Result, language: str) -> tuple[str, ...]:
     if not loaded.ok:
         return (say(language, "not-loaded", error=loaded.error),)
-    return tuple(say(language, "problem", **each) for each in loaded.facts.get("problems", ()))
+    return tuple(
+        say(language, "problem" if each["raised"] else "remark", **each)
+        for each in loaded.facts.get("problems", ())
+    )
 
 
 def _absent(

@@ -13,7 +13,7 @@ __all__ = ["Grade", "PartGrade", "QuestionGrade"]
 
 @dataclass(frozen=True, kw_only=True)
 class PartGrade:
-    """What one part of a question earned: ``score`` of ``points``, one line of text, and the misconception."""
+    """What one part of a question earned: ``score`` of ``points``, one line, and the misconception."""
 
     name: str
     title: str
@@ -146,9 +146,9 @@ class Grade:
             )
             for each in data["questions"]
         )
-        names = ("assignment", "title", "student", "language", "complete")
-        lists = {name: tuple(data[name]) for name in ("problems", "protections", "missing")}
-        return Grade(questions=questions, **{name: data[name] for name in names}, **lists)
+        plain = {name: data[name] for name in ("assignment", "title", "student", "language", "complete")}
+        lists: dict[str, Any] = {name: tuple(data[name]) for name in ("problems", "protections", "missing")}
+        return Grade(questions=questions, **plain, **lists)
 
     def __str__(self) -> str:
         lines = [f"{self.title}: {self.score:g} / {self.points:g}"]

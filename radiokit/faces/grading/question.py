@@ -151,8 +151,7 @@ class Question:
 def _function(signature: str) -> ast.FunctionDef:
     try:
         (found,) = ast.parse(f"def {signature}: pass").body
-    except (SyntaxError, TypeError, ValueError):
-        found = None  # type: ignore[assignment]
-    if not isinstance(found, ast.FunctionDef):
-        raise ParameterError("signature", signature, "as in 'solid_angle(half_angle)'")
+    except (SyntaxError, ValueError):
+        raise ParameterError("signature", signature, "as in 'solid_angle(half_angle)'") from None
+    assert isinstance(found, ast.FunctionDef)
     return found

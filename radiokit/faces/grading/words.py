@@ -60,6 +60,7 @@ SENTENCES: Mapping[str, Words] = {
         "en": "{where} raised {raised}: {message}",
         "ru": "{where}: ошибка {raised}: {message}",
     },
+    "remark": {"en": "{where}: {message}", "ru": "{where}: {message}"},
     "call": {"en": "{function} {error}", "ru": "{function}: {error}"},
     "judge-failed": {
         "en": "the answer could not be judged ({error}); a teacher will look at it",

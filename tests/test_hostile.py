@@ -1,0 +1,203 @@
+"""Hostile submissions: none gains a point, sees an answer, outlives its grading, or harms the other question.
+
+Every attack is bounded by itself, so that a failing defence cannot take the machine along.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import os
+import re
+import signal
+import socket
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import radiokit as rk
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="these attacks are written for Linux")
+
+G = rk.grading
+BOTH = {"en": "A question", "ru": "Вопрос"}
+ANSWER = 271828.1828
+"""What the reference multiplies with; nobody can guess it."""
+
+SLOW = r"took longer than .* s"
+WRONG = r"differs from what is right at 8 of 8"
+
+
+def attacks():
+    """Return the prelude, and each attack's code and what is said of it, by its name."""
+    text = (Path(__file__).parent / "attacks.txt").read_text(encoding="utf-8")
+    found = {}
+    for section in text.split("\n=== ")[1:]:
+        head, code = section.split("\n", 1)
+        name, said = head.split(" | ") if " | " in head else (head.removesuffix(" |"), "")
+        found[name] = (code, said.replace("SLOW", SLOW).replace("WRONG", WRONG))
+    return found.pop("prelude")[0], found
+
+
+PRELUDE, ATTACKS = attacks()
+UNREADABLE = {
+    "bytes that are no text": b"\xff\xfe\x00\x00",
+    "null bytes": b"def honest(x):\0 return x",
+    "deep nesting": b"x = " + b"(" * 5000 + b")" * 5000,
+    "nothing": b"",
+}
+
+
+def the_reference(x):
+    return ANSWER * np.asarray(x)
+
+
+def the_honest_reference(x):
+    return 2.0 * np.asarray(x)
+
+
+def numbers(rng):
+    return {"x": rng.uniform(1, 2, 8)}
+
+
+def question(name, reference, seconds):
+    judge = G.Values(inputs=numbers, reference=reference)
+    return G.Question(
+        signature=f"{name}(x)",
+        points=1,
+        title=BOTH,
+        text=BOTH,
+        seconds=seconds,
+        parts=(G.Part(name="hard", judge=judge, visibility="hidden"),),
+    )
+
+
+def assignment(seconds):
+    limits = G.Limits(
+        seconds=5, memory_bytes=1 << 30, file_bytes=2 << 20, disk_bytes=1 << 23, printed_bytes=1 << 18
+    )
+    return G.Assignment(
+        name="hostile",
+        title=BOTH,
+        intro=BOTH,
+        limits=limits,
+        questions=(question("attack", the_reference, seconds), question("honest", the_honest_reference, 5)),
+    )
+
+
+@pytest.fixture
+def mark(seed):
+    return f"rk-{seed % 10**10}"
+
+
+@pytest.fixture
+def server(monkeypatch):
+    monkeypatch.setenv("RADIOKIT_SECRET", str(ANSWER))
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        server.settimeout(0)
+        yield server
+
+
+def running(mark):
+    """Whether a process of this name runs anywhere on this machine."""
+    for comm in Path("/proc").glob("[0-9]*/comm"):
+        with contextlib.suppress(OSError):
+            if comm.read_text().strip() == mark:
+                return True
+    return False
+
+
+@pytest.fixture
+def boxes(monkeypatch):
+    """Where the sandboxes of this test write, and must leave nothing."""
+    with tempfile.TemporaryDirectory() as folder:
+        Path(folder).chmod(0o755)
+        monkeypatch.setattr(tempfile, "tempdir", folder)
+        yield Path(folder)
+
+
+def handed_in(folder, server, mark, code):
+    secret = folder / "secret" / "answer.txt"
+    secret.parent.mkdir(mode=0o700)
+    secret.write_text(str(ANSWER))
+    names = {
+        "PORT": server.getsockname()[1],
+        "PARENT": os.getpid(),
+        "SECRET_FILE": str(secret),
+        "MARK": mark,
+    }
+    lines = "".join(f"{name} = {value!r}\n" for name, value in names.items())
+    path = folder / "submission.py"
+    path.write_text(f"{lines}{PRELUDE}\n{code}", encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def signals():
+    """The signals that reach this process, which must be none."""
+    came = []
+    before = signal.signal(signal.SIGURG, lambda number, frame: came.append(number))
+    yield came
+    signal.signal(signal.SIGURG, before)
+
+
+def check_nothing_is_left(server, mark, boxes):
+    deadline = time.monotonic() + 3
+    while running(mark) and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert not running(mark)
+    with pytest.raises(BlockingIOError):
+        server.accept()
+    assert not list(boxes.iterdir())
+
+
+def check_line(line):
+    assert line.isprintable()
+    assert 0 < len(line) < 500
+    assert str(ANSWER)[:8] not in line
+
+
+@pytest.mark.parametrize("attack", [name for name in ATTACKS if not name.startswith("load: ")])
+def test_an_attack_costs_its_question_alone(attack, tmp_path, server, mark, signals, boxes):
+    code, expected = ATTACKS[attack]
+    seconds = 0.7 if expected.startswith(SLOW) else 5
+    found = G.grade(assignment(seconds), handed_in(tmp_path, server, mark, code))
+    assert found.complete
+    assert found["attack"].score == 0
+    assert re.search(expected, found["attack"].explanation), found["attack"].explanation
+    check_line(found["attack"].explanation)
+    assert found["honest"].score == found["honest"].points == 1, found["honest"].explanation
+    assert not any(each.review for each in found.questions)
+    assert not signals
+    check_nothing_is_left(server, mark, boxes)
+
+
+@pytest.mark.parametrize("attack", [name for name in ATTACKS if name.startswith("load: ")])
+def test_an_attack_while_it_is_loaded_costs_the_submission_at_most(attack, tmp_path, server, mark, boxes):
+    code, expected = ATTACKS[attack]
+    work = dataclasses.replace(assignment(5), limits=G.Limits(load_seconds=0.7, printed_bytes=1 << 18))
+    found = G.grade(work, handed_in(tmp_path, server, mark, code))
+    assert found.complete
+    assert found["attack"].score == 0
+    assert re.search(expected, found["attack"].explanation), found["attack"].explanation
+    for each in found.questions:
+        check_line(each.explanation)
+    check_nothing_is_left(server, mark, boxes)
+
+
+@pytest.mark.parametrize("content", UNREADABLE)
+def test_a_file_that_is_no_program_gets_a_line(content, tmp_path):
+    path = tmp_path / "submission.py"
+    path.write_bytes(UNREADABLE[content])
+    found = G.grade(assignment(5), path)
+    assert found.complete
+    assert found.score == 0
+    check_line(found["honest"].explanation)
+
+
+def test_the_attacks_are_many():
+    assert len(ATTACKS) >= 60
