@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from radiokit.checks.cells import CELLS, Cells
+from radiokit.faces.grading.directions import ABOVE
 from radiokit.faces.grading.finding import Callee, Finding, Mode
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.runs import UnusableError
@@ -19,7 +20,7 @@ from radiokit.faces.grading.words import say
 from radiokit.measure.slope import find_lobe
 from radiokit.measure.statistics import chi_square
 
-__all__ = ["ABOVE", "Draws", "Fit", "cells_of_density", "sampled", "u_slip"]
+__all__ = ["Draws", "Fit", "cells_of_density", "sampled", "u_slip"]
 
 UNIT = 1e-5
 """How far from 1 a length may be, and from each other what should be the same: float32 is let pass."""
@@ -28,7 +29,6 @@ NEAR, FAR, TORN = 1e-3, 0.2, 0.05
 """Points this near in the square may lie this far apart on the sphere in only this share of cases."""
 
 Density = Callable[[Array], Array]
-ABOVE = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass

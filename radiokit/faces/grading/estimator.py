@@ -15,22 +15,24 @@ from radiokit.faces.diagnosis.result import Suspicion
 from radiokit.faces.grading.finding import Callee, Finding
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.runs import FLOOR, Runs, UnusableError, gather
+from radiokit.faces.grading.runtests import (
+    ROUNDS,
+    bias,
+    claims,
+    each_level,
+    error_slip,
+    excess,
+    honest,
+    rate,
+    rate_slip,
+)
 from radiokit.faces.grading.samplewords import slip, tell
 from radiokit.faces.grading.words import say
 from radiokit.facts.errors import ParameterError
 
-__all__ = ["LEVEL", "ROUNDS", "Aspect", "Estimator", "each_level"]
+__all__ = ["Aspect", "Estimator"]
 
 Aspect = Literal["value", "error", "efficiency"]
-
-LEVEL = 1e-6 / 16
-"""The probability that one judge rejects a right function: sixteen of them reject one in 1e6 gradings."""
-
-ROUNDS = 3
-"""How often a test must fail, each time with other seeds, before it counts.
-
-So each needs a level of only ``each_level``, near 0.002, where Student's and χ² distributions hold for what
-is not normal; at 1e-7 they would not."""
 
 SURE = 0.5
 WIDER = 1.25
@@ -154,17 +156,17 @@ class Estimator:
 
     def _tests(self, runs: Runs) -> Iterator[tuple[str, float]]:
         """Yield the tests of this aspect, and their p-values."""
-        one, together = _bias(runs)
+        one, together = bias(runs)
         yield "bias", together
         yield "bias at one", one
         if self.aspect == "value":
-            yield "rate", _rate(runs)
+            yield "rate", rate(runs)
         elif self.aspect == "error":
-            yield "honest", _honest(runs, slice(None))
-            halves = [_honest(runs, slice(k, k + 2)) for k in range(0, len(runs.right), 2)]
+            yield "honest", honest(runs, slice(None))
+            halves = [honest(runs, slice(k, k + 2)) for k in range(0, len(runs.right), 2)]
             yield "honest at one", min(1.0, min(halves) * len(halves))
         else:
-            yield "variance", _excess(runs, self._given(self.budget, runs))
+            yield "variance", excess(runs, self._given(self.budget, runs))
             yield "time", 0.0 if runs.seconds > self.slowest else 1.0
 
     def _given(self, function: Callable[..., float] | None, runs: Runs) -> Array:
@@ -214,8 +216,8 @@ class Estimator:
                 return found(f"{tell(language, 'wrong-value')}; {value.text}")
             if not any(name.startswith("honest") for name in failing):
                 return self._right(runs, language, dict(measured))
-            name, confidence = _error_slip(runs)
-            ratio = math.exp(float(_claims(runs)[0].mean()) / 2)
+            name, confidence = error_slip(runs)
+            ratio = math.exp(float(claims(runs)[0].mean()) / 2)
             told = tell(language, "ratio", ratio=f"{ratio:.2g}")
             text = slip(language, name, hints)
             return found(text if name == "error-zero" else f"{text} ({told})", name, confidence)
@@ -233,7 +235,7 @@ class Estimator:
             )
             told = tell(language, "inefficient", ratio=f"{self._ratio(runs):.2g}", most=f"{most:.2g}")
             return found(f"{slip(language, 'inefficient', hints)} ({told})", "inefficient", 1.0)
-        name = _rate_slip(runs)
+        name = rate_slip(runs)
         return found(slip(language, name, hints), name, 1.0)
 
     def _value(
@@ -299,15 +301,6 @@ class Estimator:
                     yield found.suspicions, bool(found.ambiguous)
 
 
-def each_level(tests: int) -> float:
-    """Return the level of each of ``tests`` tests in each round.
-
-    >>> round(each_level(3), 5)
-    0.00275
-    """
-    return float((LEVEL / tests) ** (1 / ROUNDS))
-
-
 def _numbers(runs: Runs, context: Callable[..., Mapping[str, Any]] | None) -> dict[str, Array]:
     """Return the inputs that are numbers, one for each group, with those of the context."""
     rows = [
@@ -316,107 +309,3 @@ def _numbers(runs: Runs, context: Callable[..., Mapping[str, Any]] | None) -> di
     ]
     names = [name for name, value in rows[0].items() if np.ndim(value) == 0]
     return {name: np.array([float(row[name]) for row in rows]) for name in names}
-
-
-def _bias(runs: Runs) -> tuple[float, float]:
-    """Return the p-values that no group is biased, and that they are not all together."""
-    from scipy.special import ndtri, stdtr
-
-    count = runs.values.shape[1]
-    off = runs.means - runs.right
-    off = np.sign(off) * np.maximum(np.abs(off) - runs.floor, 0.0)
-    error = np.sqrt(runs.variances / count)
-    with np.errstate(all="ignore"):
-        t = np.where(off == 0, 0.0, off / error)
-    tails = np.maximum(stdtr(count - 1, -np.abs(t)), 1e-300)
-    scores = -np.sign(t) * ndtri(tails)
-    # A relative bias stands out by √N.
-    together = float(np.sqrt(runs.samples) @ scores / math.sqrt(runs.samples.sum()))
-    return min(1.0, 2 * float(tails.min()) * len(t)), math.erfc(abs(together) / math.sqrt(2))
-
-
-def _steady(runs: Runs) -> tuple[Array, float, float]:
-    """Return the logarithms of the groups' variances without the bias of few runs, and their variance.
-
-    The latter is that of normal runs, and what heavy tails add: as the runs' kurtosis shows it, or the
-    unsteadiness of the standard errors, whichever is more.
-    """
-    from scipy.special import polygamma, psi
-
-    count = runs.values.shape[1]
-    dof = count - 1
-    bias = float(psi(dof / 2) - math.log(dof / 2))
-    residuals = runs.values - runs.means[:, None]
-    with np.errstate(all="ignore"):
-        scaled = np.nan_to_num(residuals / np.sqrt(runs.variances)[:, None])
-    kurtosis = max(0.0, float(np.mean(scaled**4)) - 3)
-    logs: Array = np.log(runs.variances + (runs.floor / 10) ** 2 + 1e-300) - bias
-    tails = max(kurtosis, float(runs.unsteadiness.mean()))
-    return logs, float(polygamma(1, dof / 2)), tails / count
-
-
-def _rate(runs: Runs) -> float:
-    """Return the p-value that quadrupling the samples divides the variance by 4 or more."""
-    logs, normal, extra = _steady(runs)
-    gain = logs[0::2] - logs[1::2] - math.log(4)
-    gain = np.where(runs.variances[1::2] <= runs.floor[1::2] ** 2, 0.0, gain)
-    score = float(gain.sum()) / math.sqrt(2 * len(gain) * (normal + extra))
-    return 0.5 * math.erfc(-score / math.sqrt(2)) if score < 0 else 1.0
-
-
-def _claims(runs: Runs) -> tuple[Array, Array]:
-    """Return the logarithm of the ratio of claimed to true variance for each group, and its variance."""
-    logs, normal, _ = _steady(runs)
-    claimed = np.log(runs.claimed + (runs.floor / 10) ** 2 + 1e-300)
-    return claimed - logs, normal + 2 * runs.unsteadiness / runs.values.shape[1]
-
-
-def _honest(runs: Runs, groups: slice) -> float:
-    """Return the p-value that the standard errors are the spread between seeds."""
-    ratios, spread = (array[groups] for array in _claims(runs))
-    rounding = (runs.variances <= runs.floor**2) & (runs.claimed <= runs.floor**2)
-    ratios = np.where(rounding[groups], 0.0, ratios)
-    return math.erfc(abs(float(ratios.sum())) / math.sqrt(2 * float(spread.sum())))
-
-
-def _excess(runs: Runs, budget: Array) -> float:
-    """Return the p-value that the variance of one sample is at most the budget."""
-    logs, normal, extra = _steady(runs)
-    over = logs + np.log(runs.samples) - np.log(budget)
-    score = float(over.sum()) / math.sqrt(len(over) * (normal + extra))
-    return 0.5 * math.erfc(score / math.sqrt(2)) if score > 0 else 1.0
-
-
-def _error_slip(runs: Runs) -> tuple[str, float]:
-    """Return the name of what was given for the standard error, and how sure that is."""
-    ratios, spread = _claims(runs)
-    if (runs.claimed <= runs.floor**2).all():
-        repeated = _rate(runs) < each_level(1) and _rate_slip(runs) == "sample-repeated"
-        return ("sample-repeated" if repeated else "error-zero"), 1.0
-    count, variance = np.log(runs.samples), _steady(runs)[0]
-    known = {  # the ratio's logarithm, and how often the variance between seeds is in the misfit
-        "deviation-for-error": (count, 1),
-        "error-of-sum": (2 * count, 1),
-        "error-divided-by-samples": (-count, 1),
-        "variance-for-error": (variance, 2),
-        "sample-variance-for-error": (variance + 2 * count, 2),
-        "interval-for-error": (np.full_like(count, 2 * math.log(1.96)), 1),
-    }
-    misfit = {
-        name: float(np.sum((ratios - log) ** 2 / (times**2 * spread))) for name, (log, times) in known.items()
-    }
-    best = min(misfit, key=lambda name: misfit[name])
-    if misfit[best] < 4 * len(ratios):
-        return best, 1.0
-    return ("error-too-large" if ratios.sum() > 0 else "error-too-small"), 1.0
-
-
-def _rate_slip(runs: Runs) -> str:
-    """Return why the error does not fall as 1/√N."""
-    logs, normal, extra = _steady(runs)
-    gain = logs[0::2] - logs[1::2]
-    score = float(gain.sum()) / math.sqrt(2 * len(gain) * (normal + extra))
-    if abs(score) > 2.5:
-        return "error-not-falling"
-    claimed = runs.claimed <= 1e-6 * runs.variances
-    return "sample-repeated" if claimed.all() else "samples-ignored"

@@ -12,15 +12,14 @@ import numpy as np
 
 from radiokit.faces.diagnosis.catalogue import CATALOGUE
 from radiokit.faces.diagnosis.diagnose import diagnose
-from radiokit.faces.grading.draws import ABOVE, Draws, Fit, cells_of_density, sampled, u_slip
-from radiokit.faces.grading.estimator import ROUNDS, each_level
+from radiokit.faces.grading.directions import ASKED, UNIFORM, integral, probes, uniform_variance
+from radiokit.faces.grading.draws import Draws, Fit, cells_of_density, sampled, u_slip
 from radiokit.faces.grading.finding import Callee, Finding
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.runs import UnusableError
+from radiokit.faces.grading.runtests import ROUNDS, each_level
 from radiokit.faces.grading.samplewords import slip, tell
 from radiokit.facts.errors import ParameterError
-from radiokit.measure.quadrature import hemisphere
-from radiokit.measure.slope import find_lobe, slope_map
 from radiokit.measure.statistics import bernstein_test
 
 __all__ = ["Sampler", "SamplerAspect"]
@@ -30,10 +29,8 @@ SamplerAspect = Literal["distribution", "density", "efficiency"]
 FITS = 1e-3
 """The p-value from which samples are said to follow another density than the one that is asked for."""
 
-UNIFORM = 0.5 / math.pi
-ASKED = 256
-BELOW = 16
-"""Directions at which a density is asked for, and how many of them lie below the horizon."""
+SURE = 0.5
+"""From which confidence on a misconception is named."""
 
 
 def _nothing(rng: np.random.Generator) -> Mapping[str, Any]:
@@ -179,7 +176,7 @@ class Sampler:
                 return self._found("; ".join([slip(language, name, hints), *told]), name)
         if fit.never() > 0.1:
             return self._found("; ".join([slip(language, "quarter-only", hints), *told]), "quarter-only")
-        right = _integral(lambda w: w[:, 2] * self._right(w, draws.inputs), fit.cells.width)
+        right = integral(lambda w: w[:, 2] * self._right(w, draws.inputs), fit.cells.width)
         mean = float(np.mean(fit.directions[:, 2]))
         told.append(tell(language, "cosine", value=f"{mean:.3f}", right=f"{right:.3f}"))
         return self._found("; ".join(told))
@@ -199,45 +196,59 @@ class Sampler:
         language = draws.language
         asked = partial(self._right, given=draws.inputs)
         cells = cells_of_density(asked)
-        directions = _directions(cells, rng)
+        directions = probes(cells, rng)
         right = asked(directions)
         claimed = draws.claimed(directions)
         close = np.abs(claimed - right) <= self.rtol * right + 1e-9 * right.max()
         if close.all():
             return Finding(share=1.0, text=tell(language, "density"))
-        integral = f"{_integral(draws.claimed, cells.width):.4g}"
         told = tell(
             language,
             "density-wrong",
             bad=int(np.count_nonzero(~close)),
             count=ASKED,
-            integral=integral,
+            integral=f"{integral(draws.claimed, cells.width):.4g}",
         )
-        numbers = {name: value for name, value in draws.inputs.items() if value.ndim == 0}
-        above = right > 0
-        ratio = claimed[above] / right[above]
-        if np.ptp(ratio) <= self.rtol * abs(ratio.max()) and not claimed[~above].any():
-            return self._found(f"{slip(language, 'pdf-not-normalised', hints)}; {told}", "pdf-not-normalised")
+        name, text, confidence = self._density_slip(draws, directions, claimed, right, hints)
+        return self._found(f"{text}; {told}" if name else told, name, confidence)
+
+    def _density_slip(
+        self,
+        draws: Draws,
+        directions: Array,
+        claimed: Array,
+        right: Array,
+        hints: Mapping[str, Mapping[str, str]],
+    ) -> tuple[str, str, float]:
+        """Return the misconception behind a wrong density, what is said of it, and how sure that is.
+
+        Those that the question knows come first, then a wrong factor, then the whole catalogue.
+        """
+        language = draws.language
+        inputs = {name: value for name, value in draws.inputs.items() if value.ndim == 0}
         known = {"uniform-instead": _uniform, **self.variants}
         others = {name: _called(each, directions, given=draws.inputs) for name, each in known.items()}
         for variants, catalogue in ((others, ()), (None, CATALOGUE)):
             found = diagnose(
                 claimed,
                 right,
-                inputs={**numbers, "cosine": directions[:, 2]},
+                inputs={**inputs, "cosine": directions[:, 2]},
                 variants=variants,
                 language=language,
                 catalogue=catalogue,
                 rtol=self.rtol,
             )
             first = found.first
-            if first is not None and not found.ambiguous and first.confidence >= 0.5:
-                if first.name in hints or not first.detail:
-                    text = slip(language, first.name, hints)
-                else:
+            if first is not None and not found.ambiguous and first.confidence >= SURE:
+                text = slip(language, first.name, hints)
+                if first.detail and first.name not in hints:
                     text = f"{first.message.rstrip('.')} ({first.detail})"
-                return self._found(f"{text}; {told}", first.name, first.confidence)
-        return self._found(told)
+                return first.name, text, first.confidence
+            ratio = claimed[right > 0] / right[right > 0]
+            steady = np.ptp(ratio) <= self.rtol * abs(ratio).max()
+            if steady and abs(ratio[0] - 1) > self.rtol:
+                return "pdf-not-normalised", slip(language, "pdf-not-normalised", hints), 1.0
+        return "", "", 0.0
 
     def _efficiency(
         self, draws: Draws, rng: np.random.Generator, hints: Mapping[str, Mapping[str, str]]
@@ -245,7 +256,7 @@ class Sampler:
         assert self.integrand is not None
         language = draws.language
         integrand = partial(_called, self.integrand, given=draws.inputs)
-        integral, uniform = _uniform_variance(integrand)
+        exact, uniform = uniform_variance(integrand)
         level = each_level(2 * self.cases)
         failing = {"weights", "variance"}
         for _ in range(ROUNDS):
@@ -260,7 +271,7 @@ class Sampler:
             mean, variance = float(weights.mean()), float(weights.var())
             error = math.sqrt(float(np.mean(((weights - mean) ** 2 - variance) ** 2)) / self.samples)
             passed = set()
-            if bernstein_test(weights, integral, 1e-6 * integral) >= level:
+            if bernstein_test(weights, exact, 1e-6 * exact) >= level:
                 passed.add("weights")
             if variance - 3 * error <= uniform / self.factor:
                 passed.add("variance")
@@ -269,7 +280,7 @@ class Sampler:
         if variance > 0 and draws.quickest > 0:
             measured["efficiency"] = 1 / (variance * draws.quickest)
         if "weights" in failing:
-            told = {"value": f"{mean:.4g}", "right": f"{integral:.4g}"}
+            told = {"value": f"{mean:.4g}", "right": f"{exact:.4g}"}
             return Finding(share=0.0, text=tell(language, "weights", **told), measured=measured)
         ratio = {"ratio": f"{variance / uniform:.1g}"}
         if "variance" in failing:
@@ -295,29 +306,3 @@ def _called(function: Callable[..., Any], directions: Array, given: Mapping[str,
 
 def _uniform(directions: Array, **given: Any) -> Array:
     return np.full(len(directions), UNIFORM)
-
-
-def _integral(function: Callable[[Array], Array], width: float) -> float:
-    """Return the integral over the hemisphere, to some four digits if it is smooth."""
-    return float(hemisphere(function, wo=ABOVE, width=width, rtol=1e-5, max_evaluations=20_000).value)
-
-
-def _uniform_variance(integrand: Callable[[Array], Array]) -> tuple[float, float]:
-    """Return the integral over the hemisphere, and the variance of a uniform direction's weight."""
-    width = find_lobe(integrand, ABOVE, around=(False,)).width
-    options: dict[str, Any] = {"wo": ABOVE, "width": width, "rtol": 1e-8, "max_evaluations": 1_000_000}
-    mean = float(hemisphere(integrand, **options).value)
-    square = float(hemisphere(lambda w: integrand(w) ** 2, **options).value)
-    return mean, square / UNIFORM - mean**2
-
-
-def _directions(cells: Any, rng: np.random.Generator) -> Array:
-    """Return directions where a density is large, and all over the sphere."""
-    wide, count = (ASKED - BELOW) // 2, ASKED - BELOW
-    near, _, _ = slope_map(cells.aim, cells.width, rng.random(count - wide), rng.random(count - wide))
-    turn = 2 * math.pi * rng.random(wide + BELOW)
-    height = rng.random(wide + BELOW)
-    height[wide:] *= -1
-    radius = np.sqrt(1 - height**2)
-    far = np.column_stack([radius * np.cos(turn), radius * np.sin(turn), height])
-    return np.concatenate([near, far])

@@ -12,8 +12,8 @@ __all__ = ["SENTENCES", "SLIPS", "slip", "tell"]
 
 SENTENCES: Mapping[str, Words] = {
     "unbiased": {
-        "en": "right: no bias in {runs} runs, and the error falls as 1/√N",
-        "ru": "верно: смещения нет ни в одном из {runs} запусков, ошибка убывает как 1/√N",
+        "en": "right: no bias over {runs} runs, and the error falls as 1/√N",
+        "ru": "верно: по результатам запусков ({runs}) смещения нет, ошибка убывает как 1/√N",
     },
     "honest": {
         "en": "right: the standard errors are the spread between seeds",
@@ -235,7 +235,7 @@ SLIPS: Mapping[str, Words] = {
         "ru": "Плотность верна с точностью до множителя: её интеграл по полусфере должен быть равен 1.",
     },
 }
-"""Slips that only sampling knows, beside the catalogue of misconceptions; a question's own hint comes first."""
+"""Slips that only sampling knows, beside the catalogue; a question's own hint comes first."""
 
 _KNOWN = {entry.name: {"en": entry.en, "ru": entry.ru} for entry in CATALOGUE}
 
