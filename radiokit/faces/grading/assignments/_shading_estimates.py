@@ -41,18 +41,18 @@ FURNACE = Question(
     points=3,
     title={"en": "A furnace by Monte Carlo", "ru": "Белая печь методом Монте-Карло"},
     text={
-        "en": "Around a diffuse surface, $f = \\rho/\\pi$, the radiance is 1 from everywhere, so that it "
-        "reflects exactly $L_o = \\int f \\cos\\theta\\, d\\omega = \\rho$. Estimate this with `samples` "
-        "directions, uniform over the hemisphere, and return two numbers, `value, standard_error`. The "
-        "standard error is that of the mean: $s/\\sqrt N$, where $s$ is the deviation of the samples' "
-        "weights $f\\cos\\theta/p$. Draw from `numpy.random.default_rng(seed)`: the same seed gives the "
-        "same answer.\n\n"
+        "en": "Around a diffuse surface, $f = \\rho/\\pi$ with $\\rho$ = `albedo`, the radiance is 1 from "
+        "everywhere, so that it reflects exactly $L_o = \\int f \\cos\\theta\\, d\\omega = \\rho$. Estimate "
+        "this with `samples` directions, uniform over the hemisphere, and return two numbers, `value, "
+        "standard_error`. The standard error is that of the mean: $s/\\sqrt N$, where $s$ is the deviation "
+        "of the samples' weights $f\\cos\\theta/p$. Draw from `numpy.random.default_rng(seed)`: the same "
+        "seed gives the same answer.\n\n"
         "The function is run with many seeds: their mean must be $\\rho$, their spread must be what the "
         "standard error says, and four times as many samples must halve it.",
-        "ru": "Вокруг диффузной поверхности, $f = \\rho/\\pi$, яркость отовсюду равна 1, поэтому отражается "
-        "ровно $L_o = \\int f \\cos\\theta\\, d\\omega = \\rho$. Оцените эту величину по `samples` "
-        "направлениям, равномерно распределённым по полусфере, и верните два числа: `value, "
-        "standard_error`. Стандартная ошибка — это ошибка среднего, $s/\\sqrt N$, где $s$ — "
+        "ru": "Вокруг диффузной поверхности, $f = \\rho/\\pi$, где $\\rho$ = `albedo`, яркость отовсюду "
+        "равна 1, поэтому отражается ровно $L_o = \\int f \\cos\\theta\\, d\\omega = \\rho$. Оцените эту "
+        "величину по `samples` направлениям, равномерно распределённым по полусфере, и верните два числа: "
+        "`value, standard_error`. Стандартная ошибка — это ошибка среднего, $s/\\sqrt N$, где $s$ — "
         "среднеквадратичное отклонение весов отсчётов $f\\cos\\theta/p$. Случайные числа берите из "
         "`numpy.random.default_rng(seed)`: при том же seed ответ должен быть тем же.\n\n"
         "Функция запускается с многими seed: среднее должно быть равно $\\rho$, разброс — заявленной "
@@ -116,16 +116,17 @@ GLOSSY = Question(
         "that falls on it from the direction $(x, y, z)$ has the radiance $L = $ `zenith` $\\cdot z\\ +$ "
         "`side` $\\cdot (1 + x)$. Estimate\n\n"
         "$$L_o = \\int f L \\cos\\theta\\, d\\omega$$\n\n"
-        "with `samples` directions and return `value, standard_error`. Sample the lobe, not the hemisphere: "
-        "the variance must be at most a tenth of what uniform directions give.",
+        "with `samples` directions, drawn from `seed` as in the furnace, and return `value, "
+        "standard_error`. Sample the lobe, not the hemisphere: the variance must be at most a tenth of what "
+        "uniform directions give.",
         "ru": "Глянцевая поверхность с ДФО $f = \\frac{n+2}{2\\pi}\\cos^n\\alpha$ видна вдоль нормали, так "
         "что зеркальное направление — $z$ и $\\alpha = \\theta$; $n$ = `exponent`. Свет, падающий с "
         "направления $(x, y, z)$, имеет яркость $L = $ `zenith` $\\cdot z\\ +$ `side` $\\cdot (1 + x)$. "
         "Оцените\n\n"
         "$$L_o = \\int f L \\cos\\theta\\, d\\omega$$\n\n"
-        "по `samples` направлениям и верните `value, standard_error`. Выбирайте направления по лепестку, а "
-        "не равномерно по полусфере: дисперсия должна составлять не более одной десятой от той, какую дают "
-        "равномерные направления.",
+        "по `samples` направлениям, взятым из `seed`, как и в белой печи, и верните `value, "
+        "standard_error`. Выбирайте направления по лепестку, а не равномерно по полусфере: дисперсия должна "
+        "составлять не более одной десятой от той, какую дают равномерные направления.",
     },
     parts=(
         Part(name="unbiased", judge=Estimator(**_GLOSSY)),
@@ -217,16 +218,17 @@ WINDOW = Question(
         "area, by\n\n"
         "$$E = \\int L \\cos\\theta\\, d\\omega = \\int_A L\\, \\frac{\\cos\\theta \\cos\\theta'}{d^2}\\, "
         "dA,$$\n\n"
-        "where $\\theta'$ is the angle at the window, and return `value, standard_error`. Per solid angle "
-        "these points have the density $p_\\omega = p_A\\, d^2/\\cos\\theta'$ with $p_A = 1/A$.",
+        "where $\\theta'$ is the angle at the window, and return `value, standard_error`, with numbers from "
+        "`seed`. Per solid angle these points have the density $p_\\omega = p_A\\, d^2/\\cos\\theta'$ with "
+        "$p_A = 1/A$.",
         "ru": "Вы стоите на полу в начале координат, нормаль пола — $z$. Окно яркости 1 Вт/(м²·ср) занимает "
         "прямоугольник $x =$ `distance`, $|y| \\le$ `width`$/2$, $0 \\le z \\le$ `height` и светит в вашу "
         "сторону. Оцените освещённость пола по `samples` точкам, равномерно распределённым по площади "
         "окна:\n\n"
         "$$E = \\int L \\cos\\theta\\, d\\omega = \\int_A L\\, \\frac{\\cos\\theta \\cos\\theta'}{d^2}\\, "
         "dA,$$\n\n"
-        "где $\\theta'$ — угол при окне, и верните `value, standard_error`. По телесному углу плотность "
-        "этих точек равна $p_\\omega = p_A\\, d^2/\\cos\\theta'$, где $p_A = 1/A$.",
+        "где $\\theta'$ — угол при окне, и верните `value, standard_error`; случайные числа — из `seed`. По "
+        "телесному углу плотность этих точек равна $p_\\omega = p_A\\, d^2/\\cos\\theta'$, где $p_A = 1/A$.",
     },
     parts=(
         Part(name="unbiased", weight=3, judge=Estimator(**_WINDOW)),

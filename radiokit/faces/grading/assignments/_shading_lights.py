@@ -138,7 +138,8 @@ def _balls_cut(rng: np.random.Generator) -> dict[str, Any]:
 
 
 def _ball(theta: Any, half_angle: Any) -> Any:
-    return np.pi * differential_to_sphere(radius=np.sin(half_angle), distance=1.0, tilt=theta)
+    turned = np.abs((theta + np.pi) % (2 * np.pi) - np.pi)  # a diagnosis tries degrees for radians
+    return np.pi * differential_to_sphere(radius=np.sin(half_angle), distance=1.0, tilt=turned)
 
 
 def _sphere_sine_forgotten(theta: Any, half_angle: Any) -> Any:
@@ -259,7 +260,6 @@ _SLIPS_OF_WEIGHT: Mapping[str, Callable[..., Any]] = {
     "light-cosine-forgotten": _weight_of(lambda d, c, a: d**2 / a),
     "cosine-multiplied": _weight_of(lambda d, c, a: d**2 * c / a),
     "power-heuristic": _weight_of(lambda d, c, a: d**2 / (c * a), 2.0),
-    "other-strategy": lambda **inputs: 1 - _balance(**inputs),
 }
 
 MIS_WEIGHT = Question(
@@ -303,7 +303,7 @@ MIS_WEIGHT = Question(
             "en": "This is the power heuristic, with squares; the balance heuristic has none.",
             "ru": "Это степенная эвристика, с квадратами; в балансной их нет.",
         },
-        "other-strategy": {
+        "one-minus": {
             "en": "This is the weight of the BRDF's sample, 1 − w; that of the light's is asked for.",
             "ru": "Это вес отсчёта по ДФО, 1 − w; а нужен вес отсчёта по источнику.",
         },
