@@ -182,7 +182,7 @@ def test_hints_and_credit_of_the_question_count(local_callee: Any) -> None:
         shown=True,
     )
     assert found.share == 0.25
-    assert found.text.startswith("Mind the root")
+    assert found.text.startswith("Mind the root.")
 
 
 def test_what_is_hidden_is_not_told(local_callee: Any) -> None:

@@ -144,8 +144,8 @@ def test_a_sampler_that_follows_its_own_density_is_told_so(
     own = _found(_judge(), local_callee(lambda u: around(np.cbrt(u[:, 0]), u[:, 1]), squared), rng)
     not_own = _found(_judge(), local_callee(sample, squared), rng)
     assert own.share == not_own.share == 0
-    assert "they do follow the density that pdf gives" in own.text
-    assert "they do follow" not in not_own.text
+    assert "They do follow the density that pdf gives" in own.text
+    assert "They do follow" not in not_own.text
 
 
 DENSITIES: dict[str, tuple[Map, str, float]] = {

@@ -15,7 +15,7 @@ from radiokit.faces.grading.directions import ABOVE
 from radiokit.faces.grading.finding import Callee, Finding, Mode
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.runs import UnusableError
-from radiokit.faces.grading.samplewords import slip, tell
+from radiokit.faces.grading.samplewords import line, slip, tell
 from radiokit.faces.grading.words import say
 from radiokit.measure.slope import find_lobe
 from radiokit.measure.statistics import chi_square
@@ -77,6 +77,8 @@ class Draws:
             self.quickest = min(self.quickest, result.seconds / len(given))
             if not result.ok:
                 text = say(self.language, "call", function=name, error=result.error)
+                if result.error.startswith("defines no function"):
+                    text = line(say(self.language, "no-function", function=name, guess=""))
                 problem = problem or UnusableError(Finding(share=0.0, text=text))
                 continue
             answer = result.values[0]
@@ -104,7 +106,7 @@ class Draws:
         raise problem
 
     def _problem(self, key: str, **values: Any) -> UnusableError:
-        return UnusableError(Finding(share=0.0, text=tell(self.language, key, **values)))
+        return UnusableError(Finding(share=0.0, text=line(tell(self.language, key, **values))))
 
 
 def _u(row: Array) -> str:
@@ -208,7 +210,7 @@ def sampled(draws: Draws, cells: Cells, u: Array, hints: Mapping[str, Mapping[st
     below = directions[:, 2] < -UNIT
     if below.any():
         told = tell(draws.language, "below", bad=int(below.sum()), count=len(u))
-        why = f"{slip(draws.language, 'below', hints)}; {told}" if "below" in hints else told
+        why = line(slip(draws.language, "below", hints), told) if "below" in hints else line(told)
         raise UnusableError(Finding(share=0.0, text=why, diagnosis="below", confidence=1.0))
     lifted = np.column_stack([directions[:, :2], np.maximum(directions[:, 2], 1e-12)])
     return Fit(cells, lifted, len(u))

@@ -26,7 +26,7 @@ from radiokit.faces.grading.runtests import (
     rate,
     rate_slip,
 )
-from radiokit.faces.grading.samplewords import slip, tell
+from radiokit.faces.grading.samplewords import line, slip, tell
 from radiokit.faces.grading.words import say
 from radiokit.facts.errors import ParameterError
 
@@ -202,70 +202,62 @@ class Estimator:
         shown: bool,
         measured: Mapping[str, float],
     ) -> Finding:
-        def found(text: str, name: str = "", confidence: float = 0.0) -> Finding:
+        def found(*text: str, name: str = "", confidence: float = 1.0) -> Finding:
             share = self.credit.get(name, 0.0)
-            rounded = round(confidence, 2)
-            return Finding(share=share, text=text, diagnosis=name, confidence=rounded, measured=measured)
+            rounded = round(confidence, 2) if name else 0.0
+            return Finding(
+                share=share, text=line(*text), diagnosis=name, confidence=rounded, measured=measured
+            )
 
         biased = any(name.startswith("bias") for name in failing)
-        value = self._value(runs, language, hints, shown) if biased or runs.frozen else None
-        if runs.frozen and not runs.exact and (value is None or not value.diagnosis):
-            return found(slip(language, "seed-reused", hints), "seed-reused", 1.0)
+        why, about, sure = (
+            self._value(runs, language, hints, shown) if biased or runs.frozen else ([], "", 0.0)
+        )
+        if runs.frozen and not runs.exact and not about:
+            return found(slip(language, "seed-reused", hints), name="seed-reused")
         if self.aspect == "error":
-            if value is not None and not value.diagnosis:
-                return found(f"{tell(language, 'wrong-value')}; {value.text}")
+            if why and not about:
+                return found(tell(language, "wrong-value"), *why)
             if not any(name.startswith("honest") for name in failing):
                 return self._right(runs, language, dict(measured))
-            name, confidence = error_slip(runs)
+            name = error_slip(runs)
             ratio = math.exp(float(claims(runs)[0].mean()) / 2)
-            told = tell(language, "ratio", ratio=f"{ratio:.2g}")
-            text = slip(language, name, hints)
-            return found(text if name == "error-zero" else f"{text} ({told})", name, confidence)
-        if value is not None:
-            if self.aspect == "efficiency":
-                return found(
-                    tell(language, "biased-first", problem=value.text), value.diagnosis, value.confidence
-                )
-            return found(value.text, value.diagnosis, value.confidence)
-        if "time" in failing and "variance" not in failing:
-            return found(tell(language, "slow"), "slow", 1.0)
-        if self.aspect == "efficiency":
-            most = float(
-                np.exp(np.mean(np.log(self._given(self.budget, runs) / self._given(self.uniform, runs))))
-            )
-            told = tell(language, "inefficient", ratio=f"{self._ratio(runs):.2g}", most=f"{most:.2g}")
-            return found(f"{slip(language, 'inefficient', hints)} ({told})", "inefficient", 1.0)
-        name = rate_slip(runs)
-        return found(slip(language, name, hints), name, 1.0)
+            told = "" if name in ("error-zero", "sample-repeated") else f"{ratio:.2g}"
+            return found(slip(language, name, hints), told and tell(language, "ratio", ratio=told), name=name)
+        if why:
+            first = [tell(language, "biased-first")] if self.aspect == "efficiency" else []
+            return found(*first, *why, name=about, confidence=sure)
+        if self.aspect == "value":
+            name = rate_slip(runs)
+            return found(slip(language, name, hints), name=name)
+        if "variance" not in failing:
+            return found(tell(language, "slow"), name="slow")
+        shares = self._given(self.budget, runs) / self._given(self.uniform, runs)
+        most = f"{float(np.exp(np.mean(np.log(shares)))):.2g}"
+        told = tell(language, "inefficient", ratio=f"{self._ratio(runs):.2g}", most=most)
+        return found(slip(language, "inefficient", hints), told, name="inefficient")
 
     def _value(
         self, runs: Runs, language: str, hints: Mapping[str, Mapping[str, str]], shown: bool
-    ) -> Finding:
-        """Say what is wrong with the mean of the values; the diagnosis is empty where nothing known fits."""
+    ) -> tuple[list[str], str, float]:
+        """Return what is wrong with the mean of the values, by which misconception, and how sure that is."""
         worst = int(np.argmax(np.abs(runs.means - runs.right) / np.maximum(runs.floor, 1e-300)))
         count = runs.values.shape[1]
         told = {"inputs": runs.brief(worst), "runs": count, "value": f"{runs.means[worst]:.4g}"}
-        text = tell(language, "biased-shown", right=f"{runs.right[worst]:.4g}", **told)
+        seen = tell(language, "biased-shown", right=f"{runs.right[worst]:.4g}", **told)
         if not shown:
             ratio = f"{float(np.mean(runs.means / runs.right)):.4g}"
-            text = tell(language, "biased", runs=runs.values.size, ratio=ratio)
+            seen = tell(language, "biased", runs=runs.values.size, ratio=ratio)
         for suspicions, ambiguous in self._suspected(runs, language):
             first = suspicions[0]
             if first.confidence < SURE or ambiguous:
-                names = " / ".join(slip(language, each.name, hints) for each in suspicions[:2])
-                why = say(language, "one-of", names=names)
-                return Finding(
-                    share=0.0, text=f"{text}; {why}", diagnosis=first.name, confidence=first.confidence
-                )
-            detail = f" ({first.detail})" if first.detail else ""
-            why = slip(language, first.name, hints) if first.name in hints or not detail else first.message
-            return Finding(
-                share=0.0,
-                text=f"{why.rstrip('.')}{detail}; {text}",
-                diagnosis=first.name,
-                confidence=first.confidence,
-            )
-        return Finding(share=0.0, text=text)
+                names = " / ".join(slip(language, each.name, hints).rstrip(".") for each in suspicions[:2])
+                return [say(language, "one-of", names=names), seen], first.name, first.confidence
+            why = slip(language, first.name, hints)
+            if first.detail and first.name not in hints:
+                why = f"{first.message.rstrip('.')} ({first.detail})"
+            return [why, seen], first.name, first.confidence
+        return [seen], "", 0.0
 
     def _suspected(self, runs: Runs, language: str) -> Iterator[tuple[tuple[Suspicion, ...], bool]]:
         """Yield what explains the means: first among this question's variants, then in the catalogue."""

@@ -13,7 +13,7 @@ import numpy as np
 from radiokit.faces.grading.finding import Callee, Finding
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.result import Result
-from radiokit.faces.grading.samplewords import slip, tell
+from radiokit.faces.grading.samplewords import line, slip, tell
 from radiokit.faces.grading.words import say
 
 __all__ = ["FLOOR", "Runs", "UnusableError", "gather"]
@@ -154,26 +154,28 @@ def gather(
     for asked, (value, error) in again:
         second, other = _pair(callee, callee.call(*asked, outputs=2), {}, language)
         if abs(second - value) > SAME * abs(value) or abs(other - error) > SAME * max(error, abs(value)):
-            text = slip(language, "not-repeatable", hints)
+            text = line(slip(language, "not-repeatable", hints))
             raise UnusableError(Finding(share=0.0, text=text, diagnosis="not-repeatable", confidence=1.0))
     return Runs(values, errors, np.array(right), np.array(counts), tuple(given), quickest)
 
 
 def _pair(callee: Callee, result: Result, inputs: Mapping[str, Any], language: str) -> tuple[float, float]:
     """Return a value and its standard error."""
+    pair = line(tell(language, "pair", function=callee.name))
+    if not result.ok and not result.raised and "are wanted" in result.error:
+        raise UnusableError(Finding(share=0.0, text=pair))
     if not result.ok:
         text = say(language, "call", function=callee.name, error=result.error)
         raise UnusableError(Finding(share=0.0, text=text))
     numbers = [array for array in result.values if array.size == 1 and array.dtype.kind != "c"]
     if len(numbers) != 2 or len(result.values) != 2:
-        shape = ", ".join(str(array.shape) for array in result.values)
-        raise UnusableError(Finding(share=0.0, text=tell(language, "pair", shape=shape)))
+        raise UnusableError(Finding(share=0.0, text=pair))
     value, error = (float(array.reshape(())) for array in numbers)
     scalars = {name: np.asarray(given).item() for name, given in inputs.items() if np.ndim(given) == 0}
     told = {"value": f"{value:.6g}", "error": f"{error:.6g}", "inputs": described(scalars)}
     if not (math.isfinite(value) and math.isfinite(error)):
-        text = tell(language, "not-a-number", **told)
+        text = line(tell(language, "not-a-number", **told))
         raise UnusableError(Finding(share=0.0, text=text, diagnosis="not-finite", confidence=1.0))
     if error < 0:
-        raise UnusableError(Finding(share=0.0, text=tell(language, "negative-error", **told)))
+        raise UnusableError(Finding(share=0.0, text=line(tell(language, "negative-error", **told))))
     return value, error

@@ -110,12 +110,12 @@ def excess(runs: Runs, budget: Array) -> float:
     return 0.5 * math.erfc(score / math.sqrt(2)) if score > 0 else 1.0
 
 
-def error_slip(runs: Runs) -> tuple[str, float]:
-    """Return the name of what was given for the standard error, and how sure that is."""
+def error_slip(runs: Runs) -> str:
+    """Return the name of what was given for the standard error."""
     ratios, spread = claims(runs)
     if (runs.claimed <= runs.floor**2).all():
         repeated = rate(runs) < each_level(1) and rate_slip(runs) == "sample-repeated"
-        return ("sample-repeated" if repeated else "error-zero"), 1.0
+        return "sample-repeated" if repeated else "error-zero"
     count, variance = np.log(runs.samples), steady(runs)[0]
     known = {  # the ratio's logarithm, and how often the variance between seeds is in the misfit
         "deviation-for-error": (count, 1),
@@ -130,8 +130,8 @@ def error_slip(runs: Runs) -> tuple[str, float]:
     }
     best = min(misfit, key=lambda name: misfit[name])
     if misfit[best] < 4 * len(ratios):
-        return best, 1.0
-    return ("error-too-large" if ratios.sum() > 0 else "error-too-small"), 1.0
+        return best
+    return "error-too-large" if ratios.sum() > 0 else "error-too-small"
 
 
 def rate_slip(runs: Runs) -> str:

@@ -18,7 +18,7 @@ from radiokit.faces.grading.finding import Callee, Finding
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.runs import UnusableError
 from radiokit.faces.grading.runtests import ROUNDS, each_level
-from radiokit.faces.grading.samplewords import slip, tell
+from radiokit.faces.grading.samplewords import line, slip, tell
 from radiokit.facts.errors import ParameterError
 from radiokit.measure.statistics import bernstein_test
 
@@ -155,11 +155,11 @@ class Sampler:
             fit = sampled(draws, cells, u, hints)
             name = name if turn else u_slip(draws, u, fit.directions, rng)
             if name in ("rows-mixed", "u-unused"):
-                return self._found(slip(language, name, hints), name)
+                return self._found(slip(language, name, hints), name=name)
             failing -= {test for test, p in fit.p_values().items() if p >= level}
             if not failing:
                 if name:
-                    return self._found(slip(language, name, hints), name)
+                    return self._found(slip(language, name, hints), name=name)
                 return Finding(share=1.0, text=tell(language, "sampled", samples=self.samples))
         return self._mismatch(draws, fit, hints)
 
@@ -173,13 +173,13 @@ class Sampler:
         for name, variant in {**self.variants, "uniform-instead": _uniform}.items():
             density = partial(_called, variant, given=draws.inputs)
             if min(fit.p_values(density).values()) > FITS:
-                return self._found("; ".join([slip(language, name, hints), *told]), name)
+                return self._found(slip(language, name, hints), *told, name=name)
         if fit.never() > 0.1:
-            return self._found("; ".join([slip(language, "quarter-only", hints), *told]), "quarter-only")
+            return self._found(slip(language, "quarter-only", hints), *told, name="quarter-only")
         right = integral(lambda w: w[:, 2] * self._right(w, draws.inputs), fit.cells.width)
         mean = float(np.mean(fit.directions[:, 2]))
         told.append(tell(language, "cosine", value=f"{mean:.3f}", right=f"{right:.3f}"))
-        return self._found("; ".join(told))
+        return self._found(*told)
 
     def _own(self, draws: Draws, fit: Fit) -> bool:
         """Return whether the samples follow the density that is claimed."""
@@ -210,7 +210,7 @@ class Sampler:
             integral=f"{integral(draws.claimed, cells.width):.4g}",
         )
         name, text, confidence = self._density_slip(draws, directions, claimed, right, hints)
-        return self._found(f"{text}; {told}" if name else told, name, confidence)
+        return self._found(text, told, name=name, confidence=confidence)
 
     def _density_slip(
         self,
@@ -265,7 +265,7 @@ class Sampler:
             value = np.where(directions[:, 2] > 0, integrand(directions), 0.0)
             if (claimed[value > 0] == 0).any():
                 raise UnusableError(
-                    Finding(share=0.0, text=tell(language, "density-zero", function=self.pdf))
+                    Finding(share=0.0, text=line(tell(language, "density-zero", function=self.pdf)))
                 )
             weights = np.divide(value, claimed, out=np.zeros_like(value), where=claimed > 0)
             mean, variance = float(weights.mean()), float(weights.var())
@@ -281,22 +281,22 @@ class Sampler:
             measured["efficiency"] = 1 / (variance * draws.quickest)
         if "weights" in failing:
             told = {"value": f"{mean:.4g}", "right": f"{exact:.4g}"}
-            return Finding(share=0.0, text=tell(language, "weights", **told), measured=measured)
+            return Finding(share=0.0, text=line(tell(language, "weights", **told)), measured=measured)
         ratio = {"ratio": f"{variance / uniform:.1g}"}
         if "variance" in failing:
             text = tell(language, "inefficient", most=f"{1 / self.factor:.2g}", **ratio)
-            found = self._found(f"{slip(language, 'inefficient', hints)}; {text}", "inefficient")
+            found = self._found(slip(language, "inefficient", hints), text, name="inefficient")
             return replace(found, measured=measured)
         if draws.quickest > self.slowest:
-            return Finding(share=0.0, text=tell(language, "slow"), diagnosis="slow", measured=measured)
+            return Finding(share=0.0, text=line(tell(language, "slow")), diagnosis="slow", measured=measured)
         return Finding(share=1.0, text=tell(language, "efficient", **ratio), measured=measured)
 
     def _right(self, directions: Array, given: Mapping[str, Array]) -> Array:
         return _called(self.density, directions, given=given)
 
-    def _found(self, text: str, name: str = "", confidence: float = 1.0) -> Finding:
+    def _found(self, *text: str, name: str = "", confidence: float = 1.0) -> Finding:
         sure = round(confidence, 2) if name else 0.0
-        return Finding(share=self.credit.get(name, 0.0), text=text, diagnosis=name, confidence=sure)
+        return Finding(share=self.credit.get(name, 0.0), text=line(*text), diagnosis=name, confidence=sure)
 
 
 def _called(function: Callable[..., Any], directions: Array, given: Mapping[str, Array]) -> Array:

@@ -8,7 +8,10 @@ from typing import Any
 from radiokit.faces.diagnosis.catalogue import CATALOGUE
 from radiokit.faces.grading.words import Words
 
-__all__ = ["SENTENCES", "SLIPS", "slip", "tell"]
+__all__ = ["SENTENCES", "SLIPS", "line", "slip", "tell"]
+
+LONGEST = 320
+"""How many characters a line should have at most."""
 
 SENTENCES: Mapping[str, Words] = {
     "unbiased": {
@@ -24,8 +27,8 @@ SENTENCES: Mapping[str, Words] = {
         "ru": "верно: каждый отсчёт даёт точное значение, и ошибка это отражает",
     },
     "pair": {
-        "en": "returns {shape} where two numbers are right: return value, standard_error",
-        "ru": "возвращает {shape}, а нужны два числа: return value, standard_error",
+        "en": "{function} must return two numbers: return value, standard_error",
+        "ru": "{function} должна возвращать два числа: return value, standard_error",
     },
     "not-a-number": {
         "en": "gives value {value} and standard error {error} at {inputs}",
@@ -69,8 +72,8 @@ SENTENCES: Mapping[str, Words] = {
         "ru": "отсчёт вычисляется так долго, что равномерные направления дали бы ту же ошибку быстрее",
     },
     "biased-first": {
-        "en": "efficiency counts only where the value is right: {problem}",
-        "ru": "эффективность имеет смысл, только если значение верно: {problem}",
+        "en": "efficiency counts only where the value is right",
+        "ru": "эффективность имеет смысл, только если значение верно",
     },
     "sampled": {
         "en": "right: {samples} directions follow the density that is asked for",
@@ -253,9 +256,23 @@ def slip(language: str, name: str, hints: Mapping[str, Mapping[str, str]]) -> st
     """Return what is said of a slip: the question's own hint, or this file's, or the catalogue's.
 
     >>> slip("en", "error-of-sum", {})
-    'Your standard error is that of the sum, σ√N: that of the mean is σ/√N'
+    'Your standard error is that of the sum, σ√N: that of the mean is σ/√N.'
     """
     for known in (hints, SLIPS, _KNOWN):
         if name in known:
-            return known[name][language].rstrip(".")
+            return known[name][language]
     return name
+
+
+def line(*sentences: str) -> str:
+    """Return one line of sentences, the first one anyway and each further one while there is room for it.
+
+    >>> line("one thing", "Another.", "")
+    'One thing. Another.'
+    """
+    text = ""
+    for each in filter(None, sentences):
+        more = f"{text} {each[0].upper()}{each[1:].rstrip('.')}.".strip()
+        if not text or len(more) <= LONGEST:
+            text = more
+    return text
