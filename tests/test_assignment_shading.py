@@ -255,11 +255,11 @@ PLANTED: dict[str, tuple[dict[str, Function], dict[str, tuple[str, float]]]] = {
     ),
     "solid angle alone": (
         {"sphere_irradiance": lambda t, a: 2 * np.pi * (1 - np.cos(a)) + 0 * t},
-        {"ordinary": ("cosine-forgotten", 0), "hard": ("", 0)},
+        {"ordinary": ("cosine-forgotten", 0), "hard": ("cosine-forgotten", 0)},
     ),
     "small light": (
         {"sphere_irradiance": lambda t, a: 2 * np.pi * (1 - np.cos(a)) * np.maximum(np.cos(t), 0)},
-        {"ordinary": ("small-light", 0), "hard": ("", 0)},
+        {"ordinary": ("small-light", 0), "hard": ("small-light", 0)},
     ),
     "clamp outside the integral": (
         {"sphere_irradiance": lambda t, a: np.pi * np.sin(a) ** 2 * np.maximum(np.cos(t), 0)},
@@ -267,7 +267,7 @@ PLANTED: dict[str, tuple[dict[str, Function], dict[str, tuple[str, float]]]] = {
     ),
     "sine of the rings forgotten": (
         {"sphere_irradiance": lambda t, a: 2 * np.pi * np.sin(a) * np.maximum(np.cos(t), 0)},
-        {"ordinary": ("sine-forgotten", 0), "hard": ("", 0)},
+        {"ordinary": ("sine-forgotten", 0), "hard": ("sine-forgotten", 0)},
     ),
     "1/N forgotten": ({"furnace": _furnace_sum}, {"unbiased": ("sum-for-mean", 0)}),
     "pdf forgotten": (

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from string import Formatter
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,8 @@ import pytest
 from radiokit.faces.grading.estimator import Aspect, Estimator
 from radiokit.faces.grading.runs import gather
 from radiokit.faces.grading.runtests import LEVEL, ROUNDS, each_level
+from radiokit.faces.grading.samplewords import SENTENCES, SLIPS
+from radiokit.faces.grading.words import words
 from radiokit.facts.errors import ParameterError
 
 Weights = Callable[[np.random.Generator, int], Any]
@@ -146,6 +149,7 @@ WRONG: dict[str, tuple[Callable[..., Any], str | None, str | None]] = {
     "1.96 σ/√N": (estimator(error=lambda w: 1.96 * _error(w)), None, "interval-for-error"),
     "half": (estimator(error=lambda w: 0.5 * _error(w)), None, "error-too-small"),
     "four thirds": (estimator(error=lambda w: 4 / 3 * _error(w)), None, "error-too-large"),
+    "an error where there is none": (lambda a, n, s: (a, 0.1), None, "error-too-large"),
     "no error": (estimator(error=lambda w: 0.0), None, "error-zero"),
     "NaN": (lambda a, n, s: (math.nan, 0.0), "not-finite", "not-finite"),
     "negative": (lambda a, n, s: (a, -1.0), "", ""),
@@ -170,6 +174,17 @@ def test_a_slip_is_named_and_costs_its_own_part(
             texts.add(found.text)
         assert len(texts) == 2
         assert all(texts)
+
+
+def test_every_sentence_has_its_words_in_both_languages() -> None:
+    fields = Formatter()
+    for key, sentence in {**SENTENCES, **SLIPS}.items():
+        assert words(key, sentence)
+        english, russian = (
+            {each[1] for each in fields.parse(sentence[name])} - {None} for name in ("en", "ru")
+        )
+        assert english == russian, key
+        assert key not in SLIPS or (sentence["en"].endswith(".") and sentence["ru"].endswith("."))
 
 
 def test_hints_and_credit_of_the_question_count(local_callee: Any) -> None:

@@ -26,7 +26,7 @@ from radiokit.faces.grading.runtests import (
     rate,
     rate_slip,
 )
-from radiokit.faces.grading.samplewords import line, slip, tell
+from radiokit.faces.grading.samplewords import PLAIN, line, slip, tell
 from radiokit.faces.grading.words import say
 from radiokit.facts.errors import ParameterError
 
@@ -209,11 +209,10 @@ class Estimator:
                 share=share, text=line(*text), diagnosis=name, confidence=rounded, measured=measured
             )
 
+        frozen = runs.frozen and not runs.exact
         biased = any(name.startswith("bias") for name in failing)
-        why, about, sure = (
-            self._value(runs, language, hints, shown) if biased or runs.frozen else ([], "", 0.0)
-        )
-        if runs.frozen and not runs.exact and not about:
+        why, about, sure = self._value(runs, language, hints, shown) if biased or frozen else ([], "", 0.0)
+        if frozen and not about:
             return found(slip(language, "seed-reused", hints), name="seed-reused")
         if self.aspect == "error":
             if why and not about:
@@ -254,7 +253,7 @@ class Estimator:
                 names = " / ".join(slip(language, each.name, hints).rstrip(".") for each in suspicions[:2])
                 return [say(language, "one-of", names=names), seen], first.name, first.confidence
             why = slip(language, first.name, hints)
-            if first.detail and first.name not in hints:
+            if first.detail and first.name not in hints and first.name not in PLAIN:
                 why = f"{first.message.rstrip('.')} ({first.detail})"
             return [why, seen], first.name, first.confidence
         return [seen], "", 0.0

@@ -8,7 +8,10 @@ from typing import Any
 from radiokit.faces.diagnosis.catalogue import CATALOGUE
 from radiokit.faces.grading.words import Words
 
-__all__ = ["SENTENCES", "SLIPS", "line", "slip", "tell"]
+__all__ = ["PLAIN", "SENTENCES", "SLIPS", "line", "slip", "tell"]
+
+PLAIN = ("horizon-not-clamped",)
+"""Misconceptions whose detail says no more than their words."""
 
 LONGEST = 320
 """How many characters a line should have at most."""
@@ -47,7 +50,7 @@ SENTENCES: Mapping[str, Words] = {
         "ru": "оценка смещена: при {inputs} среднее по {runs} запускам равно {value}, верно {right}",
     },
     "ratio": {
-        "en": "the error that is given is about {ratio} of the true one",
+        "en": "the ratio of the error that is given to the true one is about {ratio}",
         "ru": "отношение заявленной ошибки к истинной — около {ratio}",
     },
     "wrong-value": {
@@ -77,7 +80,7 @@ SENTENCES: Mapping[str, Words] = {
     },
     "sampled": {
         "en": "right: {samples} directions follow the density that is asked for",
-        "ru": "верно: выборка из {samples} направлений следует заданной плотности",
+        "ru": "верно: направления ({samples}) распределены с заданной плотностью",
     },
     "directions-shape": {
         "en": "{function} returns an array of shape {shape} where {expected} is right",
@@ -97,15 +100,11 @@ SENTENCES: Mapping[str, Words] = {
     },
     "no-match": {
         "en": "the directions do not follow the density that is asked for (chi-square test)",
-        "ru": "направления не следуют заданной плотности (критерий хи-квадрат)",
-    },
-    "no-match-own": {
-        "en": "the directions follow neither your own density nor another that is known (chi-square test)",
-        "ru": "направления не следуют плотности, которую даёт ваша же функция (критерий хи-квадрат)",
+        "ru": "распределение направлений не соответствует заданной плотности (критерий хи-квадрат)",
     },
     "consistent": {
         "en": "they do follow the density that {function} gives, but it is not the one asked for",
-        "ru": "они следуют плотности, которую даёт {function}, но это не та плотность, что задана",
+        "ru": "они распределены с той плотностью, которую даёт {function}, но задана другая",
     },
     "cosine": {
         "en": "the mean of z is {value}, right is {right}",
@@ -119,10 +118,6 @@ SENTENCES: Mapping[str, Words] = {
         "en": "the density is wrong at {bad} of {count} directions; its integral over the hemisphere is "
         "{integral}",
         "ru": "плотность неверна для {bad} из {count} направлений; её интеграл по полусфере равен {integral}",
-    },
-    "density-integral": {
-        "en": "the integral of the density over the hemisphere is {integral} and must be 1",
-        "ru": "интеграл плотности по полусфере равен {integral}, а должен быть равен 1",
     },
     "density-negative": {
         "en": "{function} gives a negative density",
@@ -145,6 +140,12 @@ SLIPS: Mapping[str, Words] = {
         "rng = np.random.default_rng(seed), and take all random numbers from it.",
         "ru": "При том же seed второй вызов даёт другой ответ: создайте генератор из seed, "
         "rng = np.random.default_rng(seed), и берите все случайные числа из него.",
+    },
+    "seed-reused": {
+        "en": "Your answers are the same for all seeds: make the generator from the seed that you are given, "
+        "rng = np.random.default_rng(seed).",
+        "ru": "Ваши ответы одинаковы при всех seed: создавайте генератор из того seed, который передан, "
+        "rng = np.random.default_rng(seed).",
     },
     "sample-repeated": {
         "en": "All samples of a run are the same one: make the generator once, before the loop, not anew "
@@ -202,7 +203,7 @@ SLIPS: Mapping[str, Words] = {
     },
     "inefficient": {
         "en": "Sample the directions that matter most: in proportion to the lobe.",
-        "ru": "Выбирайте чаще те направления, которые важнее всего: пропорционально лепестку.",
+        "ru": "Выбирайте чаще те направления, которые дают наибольший вклад: пропорционально лепестку.",
     },
     "rows-mixed": {
         "en": "A direction must follow from its own row of u alone: u in another order must give the same "
@@ -219,7 +220,7 @@ SLIPS: Mapping[str, Words] = {
         "en": "Neighbouring u give directions far apart: the map from the square to the directions should be "
         "continuous, or stratified samples lose their use.",
         "ru": "Близким u отвечают далёкие направления: отображение квадрата в направления должно быть "
-        "непрерывным, иначе расслоенная выборка теряет смысл.",
+        "непрерывным, иначе стратифицированная выборка теряет смысл.",
     },
     "quarter-only": {
         "en": "A part of the hemisphere is never sampled: the azimuth must run over the whole of 2π.",

@@ -61,7 +61,7 @@ def _sum_of(
     return total
 
 
-_SLIPS_OF_SUM: dict[str, Callable[..., Any]] = {
+_SLIPS_OF_SUM: Mapping[str, Callable[..., Any]] = {
     "horizon-not-clamped": _sum_of(clamp=lambda z: z),
     "cosine-absolute": _sum_of(clamp=np.abs),
     "cosine-forgotten": _sum_of(0.0),
@@ -142,9 +142,21 @@ def _ball(theta: Any, half_angle: Any) -> Any:
     return np.pi * differential_to_sphere(radius=np.sin(half_angle), distance=1.0, tilt=turned)
 
 
-def _sphere_sine_forgotten(theta: Any, half_angle: Any) -> Any:
-    return 2 * np.pi * np.sin(half_angle) * np.maximum(np.cos(theta), 0.0)
+def _solid_angle(half_angle: Any) -> Any:
+    return 4 * np.pi * np.sin(half_angle / 2) ** 2
 
+
+def _lit(theta: Any) -> Any:
+    return np.maximum(np.cos(theta), 0.0)
+
+
+_SLIPS_OF_BALL: Mapping[str, Callable[..., Any]] = {
+    "cosine-forgotten": lambda theta, half_angle: _solid_angle(half_angle) + 0 * theta,
+    "small-light": lambda theta, half_angle: _solid_angle(half_angle) * _lit(theta),
+    "sine-forgotten": lambda theta, half_angle: 2 * np.pi * np.sin(half_angle) * _lit(theta),
+    "horizon-not-clamped": lambda theta, half_angle: np.pi * np.sin(half_angle) ** 2 * np.cos(theta),
+    "whole-or-nothing": lambda theta, half_angle: np.pi * np.sin(half_angle) ** 2 * _lit(theta),
+}
 
 SPHERE_IRRADIANCE = Question(
     signature="sphere_irradiance(theta, half_angle)",
@@ -173,15 +185,7 @@ SPHERE_IRRADIANCE = Question(
                 reference=_ball,
                 rtol=1e-3,
                 loose={1e-2: 0.5},
-                variants={
-                    "cosine-forgotten": lambda theta, half_angle: (
-                        4 * np.pi * np.sin(half_angle / 2) ** 2 + 0 * theta
-                    ),
-                    "small-light": lambda theta, half_angle: (
-                        4 * np.pi * np.sin(half_angle / 2) ** 2 * np.cos(theta)
-                    ),
-                    "sine-forgotten": _sphere_sine_forgotten,
-                },
+                variants=_SLIPS_OF_BALL,
             ),
         ),
         Part(
@@ -192,14 +196,7 @@ SPHERE_IRRADIANCE = Question(
                 rtol=1e-3,
                 atol=1e-6,
                 loose={1e-2: 0.5},
-                variants={
-                    "horizon-not-clamped": lambda theta, half_angle: (
-                        np.pi * np.sin(half_angle) ** 2 * np.cos(theta)
-                    ),
-                    "whole-or-nothing": lambda theta, half_angle: (
-                        np.pi * np.sin(half_angle) ** 2 * np.maximum(np.cos(theta), 0.0)
-                    ),
-                },
+                variants=_SLIPS_OF_BALL,
             ),
         ),
     ),

@@ -137,10 +137,10 @@ LOBE_SAMPLE = Question(
     ),
     hints={
         "exponent-without-sine": {
-            "en": "cos θ = u^(1/n) gives cosⁿ⁻¹θ: solid angle is d(cos θ) dφ, so that the root is the "
+            "en": "With cos θ = u^(1/n) you get cosⁿ⁻¹θ: solid angle is d(cos θ) dφ, so that the root is the "
             "(n+1)-th.",
-            "ru": "cos θ = u^(1/n) даёт cosⁿ⁻¹θ: телесный угол — это d(cos θ) dφ, поэтому нужен корень "
-            "степени n + 1.",
+            "ru": "При cos θ = u^(1/n) получается cosⁿ⁻¹θ: телесный угол — это d(cos θ) dφ, поэтому нужен "
+            "корень степени n + 1.",
         },
         "exponent-with-cosine": {
             "en": "Your directions follow cosⁿ⁺¹θ, the lobe times a cosine: cosⁿθ alone is asked for.",
