@@ -339,6 +339,10 @@ PLANTED: dict[str, tuple[dict[str, Function], dict[str, tuple[str, float]]]] = {
         {"glossy": _glossy_from(1.0, lambda c, m: _lobe(c, m) * (m + 2) / (m + 1))},
         {"unbiased": ("lobe-normalisation", 0), "efficiency": ("lobe-normalisation", 0)},
     ),
+    "the exact value of a glossy surface": (
+        {"glossy": lambda n, zenith, side, samples, seed: (zenith * (n + 2) / (n + 3) + side, 0.0)},
+        dict.fromkeys(("unbiased", "honest", "efficiency"), ("not-sampled", 0)),
+    ),
     "pdf of area": (
         {"window": _window_with(lambda x, z, d, area: area * z / d)},
         {"unbiased": ("pdf-of-area", 0)},
@@ -382,7 +386,7 @@ def test_a_slip_costs_its_points_and_is_told(name: str, local_callee: Any) -> No
         diagnosis, share = wrong.get(part, ("", 1))
         points, seen, text = found[part]
         assert (seen, points) == (diagnosis, pytest.approx(share * worth)), (part, text)
-        assert part not in wrong or (sum("а" <= letter <= "я" for letter in text) > 20) == (language == "ru")
+        assert part not in wrong or (sum("а" <= letter <= "я" for letter in text) > 8) == (language == "ru")
 
 
 BAD = """

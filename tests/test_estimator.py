@@ -125,7 +125,12 @@ def _sum(albedo: float, samples: int, seed: int) -> Any:
 
 
 def _noise(albedo: float, samples: int, seed: int) -> Any:
-    return 7 * np.random.default_rng(seed).random(), 2.0
+    return 3 + np.random.default_rng(seed).random(), 0.3
+
+
+def _zero(albedo: float, samples: int, seed: int) -> Any:
+    error = 500 / math.sqrt(samples)
+    return error * np.random.default_rng(seed).standard_normal(), error
 
 
 WRONG: dict[str, tuple[Callable[..., Any], str | None, str | None]] = {
@@ -136,6 +141,12 @@ WRONG: dict[str, tuple[Callable[..., Any], str | None, str | None]] = {
     "cosine forgotten": (times(2.0), "cosine-forgotten", None),
     "cosine forgotten, exactly": (lambda a, n, s: (2 * a, 0.0), "cosine-forgotten", None),
     "some noise": (_noise, "", ""),
+    "honest noise about 0": (_zero, "noise-only", "noise-only"),
+    "noise that overflows": (
+        lambda a, n, s: (1e200 * np.random.default_rng(s).standard_normal(), 1e200),
+        "noise-only",
+        "noise-only",
+    ),
     "some percent": (times(1.06), "", ""),
     "a constant seed": (_constant_seed, "seed-reused", "seed-reused"),
     "no seed": (_no_seed, "not-repeatable", "not-repeatable"),
@@ -208,6 +219,14 @@ def test_what_is_hidden_is_not_told(local_callee: Any) -> None:
         assert ("right is" in found.text) == shown
 
 
+def test_where_nothing_exact_can_be_sampled_the_exact_value_is_no_estimate(
+    rng: np.random.Generator, local_callee: Any
+) -> None:
+    for function, diagnosis in ((RIGHT["no variance"], "not-sampled"), (furnace, "")):
+        found = _judge(exact=False).judge(local_callee(function), rng, language="en", hints={}, shown=True)
+        assert (found.diagnosis, found.share) == (diagnosis, float(not diagnosis))
+
+
 def test_efficiency_is_a_matter_of_variance(rng: np.random.Generator, local_callee: Any) -> None:
     better = estimator(lambda rng, count: 0.8 + 0.4 * rng.random(count))
     cases = {
@@ -269,7 +288,7 @@ def test_false_alarms_are_as_rare_as_is_said(name: str, slack: float, seed: int,
         )
         for test, p in {test: p for judge in judges for test, p in judge._tests(runs)}.items():
             fails[test] = fails.get(test, 0) + (p < level)
-    assert set(fails) == {"bias", "bias at one", "rate", "honest", "honest at one"}
+    assert set(fails) == {"noise", "bias", "bias at one", "rate", "honest", "honest at one"}
     for test, count in fails.items():
         assert binomial_interval(count, trials, 1 - 1e-4)[0] <= slack * level, (test, count)
     assert 4 * each_level(4) ** ROUNDS <= 1.0001 * LEVEL
@@ -311,6 +330,7 @@ def test_a_bias_of_five_per_cent_is_always_found(seed: int, local_callee: Any) -
         {"credit": {"biased": 2}},
         {"aspect": "efficiency", "budget": None},
         {"slowest": 0.0},
+        {"noise": math.nan},
     ],
 )
 def test_wrong_arguments_are_named(options: dict[str, Any]) -> None:

@@ -52,8 +52,8 @@ class Estimator:
       where the value is wrong, it must be so by a misconception that is known;
     - ``"efficiency"``: the value is right, and the variance of one sample is at most ``budget``.
 
-    Estimators without variance are right. A right estimator whose runs are nearly normal is rejected at most
-    once in 1.6e7 gradings; see ``LEVEL`` and ``ROUNDS``.
+    Estimators without variance are right, unless ``exact`` is False. A right estimator whose runs are nearly
+    normal is rejected at most once in 1.6e7 gradings; see ``LEVEL`` and ``ROUNDS``.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class Estimator:
         From a generator to the inputs by name, numbers or arrays, in the order of the parameters, without
         ``samples`` and ``seed``.
     reference : callable
-        ``reference(**inputs)`` gives the exact value.
+        ``reference(**inputs)`` gives the exact value, which is not 0.
     aspect : {"value", "error", "efficiency"}
     samples : int
         N, at least 64.
@@ -81,6 +81,10 @@ class Estimator:
         aspect. What a right solution has should be smaller by a half or more.
     uniform : callable, optional
         ``uniform(**inputs)`` gives the variance of uniform sampling, to which the text compares.
+    exact : bool
+        Whether the exact value without variance is right: False where nothing that samples can have it.
+    noise : float
+        The largest deviation of one sample, by the value, that is no mere noise; above 0.
     slowest : float
         Wall time of a sample [s] above which no variance is efficient, for the best of all runs. Loops in
         Python take some 1e-5.
@@ -89,6 +93,14 @@ class Estimator:
     ------
     ParameterError
         When an argument is out of its range.
+
+    Examples
+    --------
+    >>> def albedos(rng):
+    ...     return {"albedo": rng.uniform(0.2, 1.0)}
+    >>> judge = Estimator(inputs=albedos, reference=lambda albedo: albedo, aspect="error")
+    >>> judge.cases * judge.runs * 2
+    192
     """
 
     inputs: Callable[[np.random.Generator], Mapping[str, Any]]
@@ -102,6 +114,8 @@ class Estimator:
     credit: Mapping[str, float] = field(default_factory=dict)
     budget: Callable[..., float] | None = None
     uniform: Callable[..., float] | None = None
+    exact: bool = True
+    noise: float = 20.0
     slowest: float = 1e-3
 
     def __post_init__(self) -> None:
@@ -115,8 +129,9 @@ class Estimator:
             raise ParameterError("credit", self.credit, "shares in [0, 1]")
         if self.aspect == "efficiency" and (self.budget is None or self.uniform is None):
             raise ParameterError("budget, uniform", None, "variances, where efficiency is judged")
-        if not 0 < self.slowest < math.inf:
-            raise ParameterError("slowest", self.slowest, "a finite number above 0")
+        for name in ("noise", "slowest"):
+            if not 0 < getattr(self, name) < math.inf:
+                raise ParameterError(name, getattr(self, name), "a finite number above 0")
 
     def judge(
         self,
@@ -144,11 +159,14 @@ class Estimator:
                 )
             except UnusableError as error:
                 return error.finding
-            frozen = runs.frozen and not runs.exact
+            unsampled = runs.exact and not self.exact
+            frozen = unsampled or (runs.frozen and not runs.exact)
             if turn == 0:
                 measured = {"seconds_per_sample": runs.seconds}
-            level = each_level(len(list(self._tests(runs))))
-            failed = {name for name, p in self._tests(runs) if p < level}
+            with np.errstate(all="ignore"):  # values may be of any size
+                tests = dict(self._tests(runs))
+            level = each_level(len(tests))
+            failed = {name for name, p in tests.items() if not p >= level}
             failing = failed if turn == 0 else failing & failed
             if not failing and not frozen:
                 return self._right(runs, language, measured)
@@ -156,6 +174,7 @@ class Estimator:
 
     def _tests(self, runs: Runs) -> Iterator[tuple[str, float]]:
         """Yield the tests of this aspect, and their p-values."""
+        yield "noise", 1.0 if runs.noise <= self.noise else 0.0
         one, together = bias(runs)
         yield "bias", together
         yield "bias at one", one
@@ -209,6 +228,13 @@ class Estimator:
                 share=share, text=line(*text), diagnosis=name, confidence=rounded, measured=measured
             )
 
+        if "noise" in failing:
+            told = f"{runs.noise:.2g}" if math.isfinite(runs.noise) else "∞"
+            return found(
+                slip(language, "noise-only", hints), tell(language, "noise", ratio=told), name="noise-only"
+            )
+        if runs.exact and not self.exact:
+            return found(slip(language, "not-sampled", hints), name="not-sampled")
         frozen = runs.frozen and not runs.exact
         biased = any(name.startswith("bias") for name in failing)
         why, about, sure = self._value(runs, language, hints, shown) if biased or frozen else ([], "", 0.0)

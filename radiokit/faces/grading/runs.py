@@ -61,29 +61,40 @@ class Runs:
     @cached_property
     def means(self) -> Array:
         """The mean of each group."""
-        means: Array = self.values.mean(axis=1)
+        with np.errstate(all="ignore"):  # values may be of any size
+            means: Array = self.values.mean(axis=1)
         return means
 
     @cached_property
     def variances(self) -> Array:
         """The variance between seeds of each group."""
-        variances: Array = self.values.var(axis=1, ddof=1)
+        with np.errstate(all="ignore"):
+            variances: Array = self.values.var(axis=1, ddof=1)
         return variances
 
     @cached_property
     def claimed(self) -> Array:
         """The mean square of the standard errors that each group was given."""
-        claimed: Array = (self.errors**2).mean(axis=1)
+        with np.errstate(all="ignore"):
+            claimed: Array = (self.errors**2).mean(axis=1)
         return claimed
 
     @cached_property
     def unsteadiness(self) -> Array:
         """The relative variance of the squared errors, at most 1: how little is known of their mean."""
-        spread = self.errors**2
         with np.errstate(all="ignore"):
+            spread = self.errors**2
             found = spread.var(axis=1, ddof=1) / spread.mean(axis=1) ** 2
         steady: Array = np.clip(np.nan_to_num(found), 0.0, 1.0)
         return steady
+
+    @property
+    def noise(self) -> float:
+        """The largest deviation of one sample, by the mean or what is right; may overflow."""
+        with np.errstate(all="ignore"):
+            size = np.maximum(np.abs(self.right), np.abs(self.means))
+            found = np.sqrt(self.samples * self.variances) / size
+        return float(found.max())
 
     @property
     def exact(self) -> bool:

@@ -42,7 +42,7 @@ def each_level(tests: int) -> float:
 
 
 def bias(runs: Runs) -> tuple[float, float]:
-    """Return the p-values that no group is biased, and that they are not all together."""
+    """Return the p-values that no group is biased, and that they are not all together (Stouffer's sum)."""
     from scipy.special import ndtri, stdtr
 
     count = runs.values.shape[1]
@@ -63,6 +63,9 @@ def steady(runs: Runs) -> tuple[Array, float, float]:
 
     The latter is that of normal runs, and what heavy tails add: as the runs' kurtosis shows it, or the
     unsteadiness of the standard errors, whichever is more.
+
+    Source: Bartlett, Kendall (1946), The statistical analysis of variance-heterogeneity and the logarithmic
+    transformation, Supplement to the Journal of the Royal Statistical Society 8(1).
     """
     from scipy.special import polygamma, psi
 

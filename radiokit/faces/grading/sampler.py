@@ -84,6 +84,13 @@ class Sampler:
     ------
     ParameterError
         When an argument is out of its range.
+
+    Examples
+    --------
+    >>> def cosine(directions):
+    ...     return np.maximum(directions[:, 2], 0) / np.pi
+    >>> Sampler(density=cosine, pdf="cosine_pdf", aspect="density").samples
+    32768
     """
 
     density: Callable[..., Any]
@@ -276,6 +283,8 @@ class Sampler:
             if variance - 3 * error <= uniform / self.factor:
                 passed.add("variance")
             failing -= passed
+            if not failing:
+                break
         measured = {"seconds_per_sample": draws.quickest}
         if variance > 0 and draws.quickest > 0:
             measured["efficiency"] = 1 / (variance * draws.quickest)

@@ -53,6 +53,10 @@ SENTENCES: Mapping[str, Words] = {
         "en": "the ratio of the error that is given to the true one is about {ratio}",
         "ru": "отношение заявленной ошибки к истинной — около {ratio}",
     },
+    "noise": {
+        "en": "the deviation of one sample is {ratio} times the value",
+        "ru": "отношение отклонения одного отсчёта к значению — около {ratio}",
+    },
     "wrong-value": {
         "en": "the value is so far off that no standard error is honest",
         "ru": "значение настолько неверно, что никакая стандартная ошибка не будет честной",
@@ -146,6 +150,14 @@ SLIPS: Mapping[str, Words] = {
         "rng = np.random.default_rng(seed).",
         "ru": "Ваши ответы одинаковы при всех seed: создавайте генератор из того seed, который передан, "
         "rng = np.random.default_rng(seed).",
+    },
+    "not-sampled": {
+        "en": "The value is exact, but nothing is sampled: estimate it with the random numbers of the seed.",
+        "ru": "Значение точное, но выборки нет: оцените его по случайным числам, взятым из seed.",
+    },
+    "noise-only": {
+        "en": "The values scatter so widely between seeds that they say nothing of what is asked for.",
+        "ru": "При разных seed значения разбросаны так сильно, что ничего не говорят об искомой величине.",
     },
     "sample-repeated": {
         "en": "All samples of a run are the same one: make the generator once, before the loop, not anew "

@@ -90,6 +90,7 @@ def _glossy_uniform(exponent: Any, zenith: Any, side: Any) -> float:
 
 
 _GLOSSY: dict[str, Any] = {
+    "exact": False,
     "inputs": _skies,
     "reference": _glossy,
     "variants": {
@@ -195,6 +196,7 @@ def _over_window(kernel: Callable[[Any, Any, Any], Any]) -> Callable[..., float]
 
 
 _WINDOW: dict[str, Any] = {
+    "exact": False,
     "inputs": _windows,
     "reference": _window,
     "variants": {
