@@ -1,4 +1,4 @@
-"""Fixtures that every test may use: seeds that derive from the test's id."""
+"""What all tests share: seeds that derive from the test's id, and how tests are dealt out to processes."""
 
 from __future__ import annotations
 
@@ -16,6 +16,20 @@ from radiokit.faces.grading.finding import Callee, Mode
 from radiokit.faces.grading.result import Result
 from radiokit.faces.plots.offscreen import offscreen
 from radiokit.facts.errors import RadiokitError
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Let a process that has nothing left to do take over half of another's tests.
+
+    Unless told otherwise ``pytest -n`` deals tests out in advance, and ends with one process working alone
+    for as long as its last tests take.
+    """
+    if config.getvalue("dist") != "load":
+        return None
+    from xdist.scheduler import WorkStealingScheduling
+
+    return WorkStealingScheduling(config, log)
 
 
 @pytest.fixture

@@ -36,7 +36,7 @@ def ragged(x): return [[1, 2], [3]]
 def uneven(x): return [1.0] * int(x)
 def pair(x): return np.ones(3), np.ones((2, 2))
 def dice(x): return [random.random(), np.random.rand()]
-def sleeps(x): time.sleep(0.15); return x
+def sleeps(x): time.sleep(0.4); return x
 def dies(x):
     import os; os._exit(1)
 def memory(x): return np.broadcast_to(1.0, 10**9)
@@ -129,15 +129,25 @@ def test_seeds_repeat_what_is_random(theirs):
     assert np.all(theirs.call("dice", 1.0).values[0] != theirs.call("dice", 1.0).values[0])
 
 
+def test_random_numbers_of_loading_repeat(tmp_path):
+    path = tmp_path / "caf\udce9.py"  # a name that is no text
+    path.write_text("import random, numpy as np\nx = random.random(), np.random.rand()\ndef f(): return x")
+    found = []
+    for _ in range(2):
+        with Sandbox(path) as sandbox:
+            found.append(sandbox.call("f").values[0])
+    np.testing.assert_array_equal(*found)
+
+
 def test_calls_share_a_time(theirs):
-    with theirs.within(0.25):
+    with theirs.within(0.7):
         assert theirs.call("sleeps", 1.0).ok
-        assert theirs.call("sleeps", 1.0).error == "took longer than 0.25 s in all"
+        assert theirs.call("sleeps", 1.0).error == "took longer than 0.7 s in all"
         late = theirs.call("sleeps", 1.0)
-        assert late.error == "took longer than 0.25 s in all"
-        assert late.seconds < 0.01
+        assert late.error == "took longer than 0.7 s in all"
+        assert late.seconds < 0.2
         with theirs.within(5.0):
-            assert theirs.call("same", 1.0).error == "took longer than 0.25 s in all"
+            assert theirs.call("same", 1.0).error == "took longer than 0.7 s in all"
     with theirs.within(5.0):
         assert theirs.call("sleeps", 1.0, timeout=0.1).error == "took longer than 0.1 s"
         assert theirs.call("sleeps", 1.0).ok

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from radiokit.faces.grading.limits import Limits
-from radiokit.faces.grading.loading import starts, without_magics
 from radiokit.faces.grading.sandbox import Sandbox
+from radiokit.faces.grading.sources import starts, without_magics
 from radiokit.facts.errors import RadiokitError
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the sandbox needs a POSIX system")
@@ -20,9 +20,9 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the sandbox nee
 SCRIPT = '''\
 """Homework."""
 from __future__ import annotations
-import numpy as np, radiokit as rk, math
+import numpy as np, radiokit as rk, sys
 def first(x): return 2 * x
-print("loading")
+print("loading\\t\\x1b[31m", end="\\r"); print("…", file=sys.stderr)
 first(1)(2)
 def second(x: Unknown):
     if np.any(x > 2):
@@ -85,7 +85,7 @@ def test_a_script_goes_on_after_what_raises(opened):
     sandbox = opened(SCRIPT)
     loaded = sandbox.load()
     assert loaded.ok
-    assert loaded.output == "loading\n"
+    assert loaded.output == "…\nloading ?[31m\n"
     assert loaded.facts["names"] == ["first", "second", "Third", "third", "last"]
     assert problems(loaded) == [
         ("line 3", "ModuleNotFoundError", "radiokit is not there for a submission, which must stand alone"),
@@ -180,7 +180,7 @@ def test_strange_bytes_are_read_as_far_as_they_can_be(opened):
 
 
 def test_problems_are_bounded(opened):
-    lines = ["raise ValueError('\x1b[31m' + '\U0001f600' * 10**6)"] * 300
+    lines = ["raise ValueError('\x1b[31m' + '\U0001f600' * 10**5)"] * 100
     lines += [f"def {'é' * 50}{i}(): pass" for i in range(300)]
     loaded = opened("\n".join(lines)).load()
     assert loaded.ok
@@ -189,13 +189,13 @@ def test_problems_are_bounded(opened):
     assert all(len(words) <= 300 and words.isprintable() for each in problems(loaded) for words in each)
 
 
-def test_a_submission_that_cannot_be_loaded_is_loaded_once(opened):
+def test_a_submission_that_cannot_be_loaded_is_loaded_once(opened, monkeypatch):
     sandbox = opened("import os\nos._exit(4)\n")
     first = sandbox.call("f", 1.0)
     assert first.error == "could not be loaded: it ended its process with exit code 4"
-    again = sandbox.call("f", 1.0)
-    assert again.error == first.error
-    assert again.seconds < 0.01
+    with monkeypatch.context() as patch:
+        patch.setattr(sandbox, "_started", None)
+        assert sandbox.call("f", 1.0).error == first.error
     assert sandbox.load().error == "ended its process with exit code 4"
 
 
@@ -203,8 +203,8 @@ def test_loading_has_a_time_of_its_own(opened):
     stubborn = "import signal, time; signal.signal(signal.SIGALRM, signal.SIG_IGN)\ntime.sleep(20)"
     sandbox = opened(stubborn, limits=Limits(load_seconds=0.2))
     assert sandbox.call("f", 1.0).error == "could not be loaded: it took longer than 0.2 s"
-    sandbox = opened("import time; time.sleep(0.3)\ndef f(x): return x")
-    assert sandbox.call("f", 1.0, timeout=0.2).ok
+    sandbox = opened("import time; time.sleep(0.6)\ndef f(x): return x")
+    assert sandbox.call("f", 1.0, timeout=0.5).ok
 
 
 def test_the_name_of_a_submission_hides_no_module(opened):

@@ -98,7 +98,7 @@ def test_a_model_of_another_package_is_listed_and_judged(tmp_path):
 def test_a_wrong_claim_of_another_package_is_found(old, new, message, tmp_path):
     assert old in MODEL
     install(tmp_path, MODEL.replace(old, new))
-    found = radiokit_with(tmp_path, "validate", "felt", "--json", "--workers", "1")
+    found = radiokit_with(tmp_path, "validate", "felt", "--json", "--workers", "1", "--no-figures")
     assert found.returncode == 1, found.stderr
     (report,) = json.loads(found.stdout)["models"]
     (verdict,) = [v for v in report["verdicts"] if v["check"] == "claims"]

@@ -13,6 +13,7 @@ from radiokit.faces.bench.command import bench
 from radiokit.faces.console import fail, progress_bar, show_json, show_report, show_table, write
 from radiokit.faces.derive import derive
 from radiokit.faces.grading.classroom.command import grade_class
+from radiokit.faces.grading.command import grade
 from radiokit.faces.lecture import lecture
 from radiokit.faces.models import models
 from radiokit.faces.render.command import render
@@ -197,7 +198,8 @@ def _show_case(each: Any) -> None:
 
 app.command()(bench)
 app.command()(derive)
-app.command()(grade_class)
+app.command()(grade)
+app.command("grade-class")(grade_class)
 app.command()(lecture)
 app.command()(models)
 app.command(context_settings=_OPEN)(render)

@@ -91,6 +91,11 @@ def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
     return np.stack((ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx), axis=-1)
 
 
+def _every(components: npt.NDArray[np.bool_]) -> Any:
+    """Return whether all three of (..., 3) are true; many times as fast as ``all`` along so short an axis."""
+    return components[..., 0] & components[..., 1] & components[..., 2]
+
+
 def _length(v: FloatArray) -> Any:
     """Return the lengths of vectors whose squares may underflow."""
     return np.hypot(np.hypot(v[..., 0], v[..., 1]), v[..., 2])
@@ -121,7 +126,7 @@ def unit(v: npt.ArrayLike) -> FloatArray:
     """
     allowed = "a finite vector of shape (..., 3) other than zero"
     array = vectors("v", v, allowed)
-    bad = ~np.isfinite(array).all(axis=-1) | (array == 0.0).all(axis=-1)
+    bad = ~_every(np.isfinite(array)) | _every(array == 0.0)
     reject("v", array, np.asarray(bad), allowed)
     return _normalise(array)
 
@@ -231,9 +236,9 @@ def half_vector(wi: FloatArray, wo: FloatArray) -> FloatArray:
     array([0., 0., 1.])
     """
     total = np.add(wi, wo, dtype=np.float64)  # cancels only where it is exact
-    opposite = (total == 0.0).all(axis=-1, keepdims=True)
+    opposite = _every(total == 0.0)
     if opposite.any():
-        total = np.where(opposite, frame(wo)[..., 0, :], total)
+        total = np.where(opposite[..., None], frame(wo)[..., 0, :], total)
     return _normalise(total)
 
 

@@ -9,6 +9,15 @@ from .classroom.run import grade_class as grade_class
 from .finding import Callee as Callee
 from .finding import Finding as Finding
 from .finding import Judge as Judge
+from .formats.github import github_workflow as github_workflow
+from .formats.github import to_github as to_github
+from .formats.gradescope import to_gradescope as to_gradescope
+from .formats.gradescope_zip import gradescope_zip as gradescope_zip
+from .formats.junit import to_junit as to_junit
+from .formats.markdown import to_markdown as to_markdown
+from .formats.page import to_html as to_html
+from .formats.table import to_csv as to_csv
+from .formats.text import to_text as to_text
 from .grader import grade as grade
 from .grades import Grade as Grade
 from .grades import PartGrade as PartGrade
@@ -16,8 +25,10 @@ from .grades import QuestionGrade as QuestionGrade
 from .limits import Limits as Limits
 from .question import Part as Part
 from .question import Question as Question
+from .record import grade_schema as grade_schema
 from .remote import remote_bsdf as remote_bsdf
 from .result import Result as Result
 from .sampler import Sampler as Sampler
 from .sandbox import Sandbox as Sandbox
+from .unfinished import no_submission as no_submission
 from .values import Values as Values

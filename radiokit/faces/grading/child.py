@@ -1,6 +1,6 @@
 """The child: the program that runs inside a sandbox, loads a submission and calls its functions.
 
-It is started as ``python -P -s -S -B child.py RESULTS SITE...``: RESULTS is the file descriptor of the
+It is started as ``python -P -s -S -B child.pyc RESULTS SITE...``: RESULTS is the file descriptor of the
 answers, each SITE a folder of packages; requests come from standard input. It imports nothing of radiokit but
 the files that lie beside it. What it says is not believed: the sandbox checks every answer.
 """
@@ -9,29 +9,29 @@ from __future__ import annotations
 
 import contextlib
 import fcntl
-import importlib.util
 import json
+import marshal
 import os
+import signal
 import sys
 from pathlib import Path
 from typing import Any
 
 __all__: list[str] = []
 
+PACKAGE = "radiokit.faces.grading."
+PARTS = ("sources", "imports", "protocol", "loading", "answers")
 HIGH = 40
 """The first file descriptor tried for the private pipes."""
+BRANCH_ENDED = 90
+"""Exit code of a branch that was told to end."""
 
 
 def _beside(name: str) -> Any:
-    """Import a file that lies beside this one, under a name that no submission has."""
-    spec = importlib.util.spec_from_file_location(
-        f"_{name}", Path(__file__).resolve().with_name(f"{name}.py")
-    )
-    if spec is None or spec.loader is None:
-        raise ImportError(f"cannot import {name}")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[f"_{name}"] = module
-    spec.loader.exec_module(module)
+    """Import a compiled file that lies beside this one; others of them know it by its full name."""
+    module = sys.modules[PACKAGE + name] = type(sys)(f"_{name}")
+    with (Path(__file__).parent / f"{name}.pyc").open("rb") as file:
+        exec(marshal.loads(file.read()[16:]), module.__dict__)
     return module
 
 
@@ -53,10 +53,15 @@ class _Child:
     """Reads requests, calls functions, writes answers; holds what it needs before the submission runs."""
 
     def __init__(self, requests: int, results: int) -> None:
-        self._protocol, self._loading, self._answers = map(_beside, ("protocol", "loading", "answers"))
+        parts = {name: _beside(name) for name in PARTS}
+        for name in PARTS:  # a submission finds them under names that no other module has
+            sys.modules[f"_{name}"] = sys.modules.pop(PACKAGE + name)
+        self._protocol, self._loading, self._answers = (parts[name] for name in PARTS[-3:])
+        self._finder = parts["imports"].Finder()
         self._requests, self._results = requests, results
         self._pack, self._text = self._protocol.pack, self._protocol.plain_text
         self._read, self._write = os.read, os.write
+        self._fork, self._wait, self._exit = os.fork, os.waitpid, os._exit
         self._submission: Any = None
 
     def send(self, header: dict[str, Any], arrays: Any = ()) -> None:
@@ -73,6 +78,9 @@ class _Child:
                     return
                 whole.feed(data)
             request, arrays = whole.message()
+            if "branch" in request:
+                self._branch(request)
+                continue
             values: Any = ()
             try:
                 header, values = self._answer(request, arrays)
@@ -84,6 +92,27 @@ class _Child:
                 header = self._raised(error)
             self._flush()
             self.send({"id": request["id"], **header}, values)
+
+    def _branch(self, request: dict[str, Any]) -> None:
+        """Go on in a copy of this process, or end the copy: then all goes on from here, as it was before.
+
+        A copy that ends by itself ends this process in the same way.
+        """
+        self._flush()
+        if not request["branch"]:
+            self.send({"id": request["id"], "facts": {}})
+            self._exit(BRANCH_ENDED)
+        branch = self._fork()
+        if branch == 0:
+            self.send({"id": request["id"], "facts": {}})
+            return
+        code = os.waitstatus_to_exitcode(self._wait(branch, 0)[1])
+        if code < 0:
+            if -code != signal.SIGKILL:
+                signal.signal(-code, signal.SIG_DFL)
+            os.kill(os.getpid(), -code)
+        elif code != BRANCH_ENDED:
+            self._exit(code)
 
     def _flush(self) -> None:
         with contextlib.suppress(BaseException):
@@ -102,7 +131,8 @@ class _Child:
             file = Path.cwd() / request["file"]
             sys.path.append(str(file.parent))
             self._loading.prepare()
-            _seed(0)
+            self._finder.seed(0)
+            sys.meta_path.insert(0, self._finder)
             self._submission = self._loading.Submission(file)
             self._submission.run(seconds=request["load"])
             return {
@@ -122,7 +152,7 @@ class _Child:
         if not callable(found):
             return {"refused": f"defines {request['function']}, which is no function"}, []
         if request["seed"] is not None:
-            _seed(request["seed"])
+            self._finder.seed(request["seed"])
         return {}, self._called(found, request, arrays)
 
     def _called(self, function: Any, request: dict[str, Any], arrays: list[Any]) -> list[Any]:
@@ -152,16 +182,6 @@ def _row(array: Any, i: int, mode: str) -> Any:
     if mode == "single":
         return array[i : i + 1]
     return array[i].item() if mode == "scalar" and array.ndim == 1 else array[i]
-
-
-def _seed(seed: int) -> None:
-    """Set the state of the random numbers that belong to nobody."""
-    import random
-
-    import numpy.random
-
-    random.seed(seed)
-    numpy.random.seed(seed % (1 << 32))  # noqa: NPY002 - submissions use it
 
 
 def _facts(function: Any) -> dict[str, Any]:

@@ -152,7 +152,7 @@ def _judged(
         rng = student_rng(work, question, part, student=student, secret=secret)
         shown = part.visibility == "visible"
         try:
-            with sandbox.within(question.seconds):
+            with sandbox.apart(), sandbox.within(question.seconds):
                 finding = part.judge.judge(
                     Isolated(sandbox, question.name),
                     rng,

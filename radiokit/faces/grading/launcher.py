@@ -1,136 +1,89 @@
 """The launcher: the program that puts the child behind its walls, and clears up behind it.
 
-It is started as ``python -I -B -S launcher.py SPEC``, SPEC being JSON. It unshares what Linux can unshare,
-builds a root that holds Python and the submission alone, sets limits, gives up its rights and starts the
-child. It waits for the child, then kills every descendant; SIGTERM makes it do so at once. It imports the
-standard library alone, and nothing that the submission wrote.
+It is started as ``python -I -B -S launcher.pyc SPEC``, SPEC being JSON, beside the compiled programs of its
+box. It unshares what Linux can unshare, builds a root that holds Python and the submission alone, sets
+limits, gives up its rights, has calls refused and starts the child. It waits for the child, and looks after
+the memory of all; then it kills every descendant and removes the box. SIGTERM, or the end of who started it,
+makes it do so at once. It imports nothing that the submission wrote, and little of the standard library, as
+each start waits for that.
+
+Bubblewrap is not used: it asks for the same namespaces, and is refused where we are, unless it is installed
+with root's rights or excepted by the system's own policy.
 """
 
 from __future__ import annotations
 
-import contextlib
-import importlib.util
 import json
+import marshal
 import os
-import resource
 import select
 import signal
 import sys
 import time
-from pathlib import Path
-from typing import Any, NoReturn
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from typing import Any, NoReturn
 
 __all__: list[str] = []
 
+PARTS = ("descendants", "landlock", "namespaces", "rights", "seccomp")
+DEVICES = ("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom")
+SPARE = 4
+"""How many processes more than allowed are seen as too many: where the kernel counts, there are none."""
 FAILED = 97
 """Exit code when the walls that were asked for cannot be built here."""
+TOO_MUCH, TOO_MANY = -signal.SIGUSR1, -signal.SIGUSR2
+"""How the launcher ends where the child's processes use too much memory, or are too many."""
 
 
 def _beside(name: str) -> Any:
-    """Import a file of this folder, which is on no path."""
-    spec = importlib.util.spec_from_file_location(name, Path(__file__).with_name(f"{name}.py"))
-    if spec is None or spec.loader is None:
-        raise ImportError(f"cannot import {name}")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    """Import a compiled file of the box, which is on no path."""
+    module = type(sys)(name)
+    with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), f"{name}.pyc"), "rb") as file:
+        exec(marshal.loads(file.read()[16:]), module.__dict__)
     return module
-
-
-namespaces = _beside("namespaces")
-
-
-def _threads(uid: int) -> int:
-    """Return how many threads a user already runs: they count towards his limit."""
-    count = 0
-    for status in Path("/proc").glob("[0-9]*/status"):
-        with contextlib.suppress(OSError, IndexError, ValueError):
-            words = dict(line.split(":", 1) for line in status.read_text().splitlines())
-            count += int(words["Threads"]) if int(words["Uid"].split()[0]) == uid else 0
-    return count
-
-
-def _set_limits(limits: dict[str, int], processes: int) -> None:
-    wanted = {
-        "RLIMIT_CPU": limits["cpu_seconds"],
-        "RLIMIT_AS": limits["memory_bytes"],
-        "RLIMIT_NPROC": processes,
-        "RLIMIT_NOFILE": limits["open_files"],
-        "RLIMIT_FSIZE": limits["file_bytes"],
-        "RLIMIT_CORE": 0,
-    }
-    for name, value in wanted.items():
-        kind = getattr(resource, name, None)
-        if kind is not None:
-            hard = resource.getrlimit(kind)[1]
-            value = value if hard == resource.RLIM_INFINITY else min(value, hard)
-            with contextlib.suppress(OSError, ValueError):  # macOS refuses RLIMIT_AS
-                resource.setrlimit(kind, (value, value))
-
-
-def _may_read(uid: int, paths: list[str]) -> bool:
-    """Return whether another user could open these files."""
-    os.setegid(uid)
-    os.seteuid(uid)
-    try:
-        for path in paths:
-            with Path(path).open("rb"):
-                pass
-        return True
-    except OSError:
-        return False
-    finally:
-        os.seteuid(0)
-        os.setegid(0)
-
-
-def _give_up_rights(spec: dict[str, Any], home: str, own_users: bool) -> list[str]:
-    """Become nobody in particular, for good; return what was given up."""
-    done = []
-    for capability in range(64):
-        namespaces.control(namespaces.PR_CAPBSET_DROP, capability)
-    uid = spec["uid"]
-    if os.geteuid() == 0 and not own_users:
-        os.setgroups([])
-        if _may_read(uid, spec["needs"]):
-            os.chown(home, uid, uid)
-            os.setresgid(uid, uid, uid)
-            os.setresuid(uid, uid, uid)
-            done.append("user")
-    if namespaces.control(namespaces.PR_SET_NO_NEW_PRIVS, 1):
-        done.append("privileges")
-    namespaces.control(namespaces.PR_SET_PDEATHSIG, int(signal.SIGKILL))
-    return done
 
 
 def _start(
     spec: dict[str, Any], files: dict[str, dict[str, bytes]], own_users: bool, active: list[str]
 ) -> NoReturn:
-    """Become the child."""
+    """Become the child; ``active`` are the protections that hold so far."""
     os.setsid()
     inside = "root" in active
     box = "/box" if inside else spec["box"]
     home = "/home" if inside else f"{box}/home"
-    for place in (box, home):
-        Path(place).mkdir(exist_ok=True)
     for place, kind in ((box, "programs"), (home, "files")):
+        os.makedirs(place, exist_ok=True)
         for name, data in files[kind].items():
-            target = Path(place, name)
-            target.write_bytes(data)
-            target.chmod(0o444)
-    Path(home).chmod(0o755)
+            target = os.path.join(place, name)
+            with open(target, "wb") as file:
+                file.write(data)
+            os.chmod(target, 0o444)
+    os.chmod(home, 0o755)
     uid = spec["uid"] if os.geteuid() == 0 else os.getuid()
     release = tuple(int(part) for part in os.uname().release.split("-")[0].split(".")[:2] if part.isdigit())
     fresh = inside and own_users and release >= (5, 14)  # there, a user namespace counts for itself
-    _set_limits(
-        spec["limits"], spec["limits"]["processes"] + (3 if fresh else spec["threads"].get(str(uid), 0))
-    )
-    spec["needs"] = [*spec["needs"], f"{box}/child.py"]
-    active = [*active, *_give_up_rights(spec, home, own_users)]
-    if os.getuid() != 0:  # root's processes are not counted
-        active.append("limits")
-    if not inside and "user" not in active:  # then it may kill its launcher
-        active = [name for name in active if name != "processes"]
+    counted = 3 if fresh else spec["threads"][uid]
+    rights.limit(spec["limits"], spec["limits"]["processes"] + counted)
+    for capability in range(64):
+        namespaces.control(namespaces.PR_CAPBSET_DROP, capability)
+    if not own_users and rights.become(spec["uid"], [*spec["needs"], f"{box}/child.pyc"], home):
+        active.append("user")
+    namespaces.control(namespaces.PR_SET_PDEATHSIG, int(signal.SIGKILL))
     os.chdir(home)
+    namespaces.fix_addresses()
+    if rights.processes_are_counted():
+        active.append("limits")
+    held = []
+    if namespaces.control(namespaces.PR_SET_NO_NEW_PRIVS, 1):
+        readable = [*spec["visible"], box, "/proc" if inside else "/proc/self"]
+        writable = [home, *DEVICES, *(("/tmp", "/dev/shm") if inside else ())]
+        held = ["privileges", *landlock.restrict(readable, writable, spec["hidden"]), *seccomp.install()]
+    if not (inside or "user" in active or "signals" in held):  # then it may kill its launcher
+        active = [name for name in active if name not in ("processes", "memory")]
+    active += held
     environment = {
         "HOME": home,
         "TMPDIR": home,
@@ -145,25 +98,8 @@ def _start(
         "MKL_NUM_THREADS": "1",
         "SANDBOX": json.dumps(active),
     }
-    words = [spec["python"], "-P", "-s", "-S", "-B", f"{box}/child.py", str(spec["results"]), *spec["sites"]]
+    words = [spec["python"], "-P", "-s", "-S", "-B", f"{box}/child.pyc", str(spec["results"]), *spec["sites"]]
     os.execve(spec["python"], words, environment)
-
-
-def _clear(child: int, deadline: float) -> None:
-    """Kill every descendant: orphans become our children, as we are their reaper."""
-    me = os.getpid()
-    with contextlib.suppress(ProcessLookupError):
-        if os.waitid(os.P_PID, child, os.WEXITED | os.WNOHANG | os.WNOWAIT) is None:
-            os.kill(child, signal.SIGKILL)
-    while time.monotonic() < deadline:
-        with contextlib.suppress(OSError):
-            for pid in Path(f"/proc/{me}/task/{me}/children").read_text().split():
-                os.kill(int(pid), signal.SIGKILL)
-        try:
-            if os.waitpid(-1, os.WNOHANG)[0] == 0:
-                time.sleep(0.001)
-        except ChildProcessError:
-            return
 
 
 def _wait(child: int) -> int:
@@ -175,10 +111,12 @@ def _wait(child: int) -> int:
             return code if code >= 0 else 128 - code
 
 
-def _watch(child: int) -> int:
+def _watch(child: int, excess: Callable[[], int] | None) -> tuple[int, bool]:
     """Wait until the child ends, or SIGTERM comes, or the sandbox is gone: then our standard input closes.
 
-    Signals do no more than write into a pipe, so that none can come between this and clearing up.
+    Signals do no more than write into a pipe, so that none can come between this and clearing up. Where
+    processes are watched, ``excess`` says what of them is too much, or 0. Returned are the exit code, and
+    whether the child has ended.
     """
     read, write = os.pipe()
     os.set_blocking(write, False)
@@ -188,13 +126,54 @@ def _watch(child: int) -> int:
     poll = select.poll()
     poll.register(0, 0)
     poll.register(read, select.POLLIN)
+    period = None if excess is None else 1000 * descendants.PERIOD
+    looked = 0.0
     while True:
-        ended = os.waitid(os.P_PID, child, os.WEXITED | os.WNOHANG | os.WNOWAIT)
-        if ended is not None:
-            return ended.si_status + (0 if ended.si_code == os.CLD_EXITED else 128)
-        ready = [descriptor for descriptor, _ in poll.poll()]
-        if 0 in ready or signal.SIGTERM in os.read(read, 512):
-            return FAILED
+        descendants.bury(child)
+        code = descendants.ended(child)
+        if code is not None:
+            return code, True
+        ready = [descriptor for descriptor, _ in poll.poll(period)]
+        if 0 in ready or (read in ready and signal.SIGTERM in os.read(read, 512)):
+            return FAILED, False
+        if excess is not None and time.monotonic() - looked >= descendants.PERIOD:
+            looked = time.monotonic()
+            if code := excess():
+                return code, False
+
+
+def _remove(parent: int, name: str) -> None:
+    """Remove a folder; folders within folders are moved up first, so that no depth is too much."""
+    try:
+        top = os.open(name, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW, dir_fd=parent)
+    except OSError:
+        return
+    moved = 0
+    try:
+        while entries := os.listdir(top):
+            for entry in entries:
+                if _unlinked(top, entry):
+                    continue
+                os.chmod(entry, 0o700, dir_fd=top)
+                inner = os.open(entry, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW, dir_fd=top)
+                for each in os.listdir(inner):
+                    if not _unlinked(inner, each):
+                        os.chmod(each, 0o700, dir_fd=inner)
+                        moved += 1
+                        os.rename(each, f"..{moved}", src_dir_fd=inner, dst_dir_fd=top)
+                os.close(inner)
+                os.rmdir(entry, dir_fd=top)
+        os.rmdir(name, dir_fd=parent)
+    except OSError:  # the sandbox tries again, if it still can
+        pass
+
+
+def _unlinked(folder: int, name: str) -> bool:
+    try:
+        os.unlink(name, dir_fd=folder)
+    except OSError:
+        return False
+    return True
 
 
 def _fail(error: Exception) -> NoReturn:
@@ -202,11 +181,14 @@ def _fail(error: Exception) -> NoReturn:
     os._exit(FAILED)
 
 
-def _inside(spec: dict[str, Any], files: dict[str, dict[str, bytes]], own_users: bool) -> NoReturn:
+def _inside(
+    spec: dict[str, Any], files: dict[str, dict[str, bytes]], own_users: bool, active: list[str]
+) -> NoReturn:
     """Be the first process of the namespaces: when it ends, all of them end."""
     namespaces.control(namespaces.PR_SET_PDEATHSIG, int(signal.SIGKILL))
     try:
-        active = ["processes", "network", "root"] + (["proc"] if namespaces.new_root(spec) else [])
+        active = [*active, "processes", "network", "root"]
+        active += ["proc"] if namespaces.new_root(spec) else []
         child = os.fork()
         if child == 0:
             _start(spec, files, own_users, active)
@@ -215,32 +197,61 @@ def _inside(spec: dict[str, Any], files: dict[str, dict[str, bytes]], own_users:
     os._exit(_wait(child))
 
 
+def _contents(path: str) -> bytes:
+    with open(path, "rb") as file:
+        return file.read()
+
+
 def _main() -> None:
     spec = json.loads(sys.argv[1])
     os.umask(0o022)
     os.set_inheritable(spec["results"], True)
     files = {
-        kind: {name: Path(path).read_bytes() for name, path in spec[kind].items()}
-        for kind in ("programs", "files")
+        kind: {name: _contents(path) for name, path in spec[kind].items()} for kind in ("programs", "files")
     }
     spec["given"] = sum(len(data) + 4096 for data in files["files"].values())
-    spec["threads"] = {str(uid): _threads(uid) for uid in {os.getuid(), spec["uid"]}}
+    spec["threads"] = {uid: rights.threads(uid) for uid in {os.getuid(), spec["uid"]}}
+    folder = os.open(os.path.dirname(spec["box"]), os.O_RDONLY | os.O_DIRECTORY)
+    proc = os.open("/proc", os.O_RDONLY | os.O_DIRECTORY) if os.path.isdir("/proc/self") else -1
+    watched = descendants.watchable(proc)
+    active = ["memory"] if watched else []
     reaper = namespaces.control(namespaces.PR_SET_CHILD_SUBREAPER, 1)
     try:
         own_users = namespaces.unshare() if spec["namespaces"] else False
         child = os.fork()
-        if child == 0 and spec["namespaces"]:
-            _inside(spec, files, own_users)
         if child == 0:
-            _start(spec, files, False, ["processes"] if reaper else [])
+            for descriptor in (folder, proc):
+                if descriptor >= 0:
+                    os.close(descriptor)
+        if child == 0 and spec["namespaces"]:
+            _inside(spec, files, own_users, active)
+        if child == 0:
+            _start(spec, files, False, [*active, "processes"] if reaper else active)
     except Exception as error:
         _fail(error)
     for descriptor in (1, 2, spec["results"]):
         os.close(descriptor)
-    code = _watch(child)
-    _clear(child, time.monotonic() + 2)
+    me, limits = os.getpid(), spec["limits"]
+    ours = 2 if spec["namespaces"] else 1  # the launcher, and the first process of the namespaces
+
+    def excess() -> int:
+        """Return what the child's processes have too much of, as is seen twice, or 0."""
+        for _ in range(2):
+            pids = descendants.tree(proc, me)[ours:]
+            many = len(pids) > limits["processes"] + SPARE
+            if not many and descendants.used(proc, pids, limits["memory_bytes"]) <= limits["memory_bytes"]:
+                return 0
+        return TOO_MANY if many else TOO_MUCH
+
+    code, ended = _watch(child, excess if watched else None)
+    descendants.clear(proc, 0 if ended else child, time.monotonic() + 2)
+    _remove(folder, os.path.basename(spec["box"]))
+    if code < 0:  # no exit code of a child looks like it
+        signal.signal(-code, signal.SIG_DFL)
+        os.kill(me, -code)
     os._exit(code)
 
 
 if __name__ == "__main__":
+    descendants, landlock, namespaces, rights, seccomp = map(_beside, PARTS)
     _main()

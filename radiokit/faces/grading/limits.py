@@ -11,10 +11,13 @@ __all__ = ["PROTECTIONS", "Limits"]
 
 PROTECTIONS = {
     "limits": "processor time, memory, processes, open files and file sizes are limited",
+    "memory": "the memory of all its processes together is limited",
     "processes": "no process outlives the sandbox",
     "privileges": "no program can raise its rights",
     "user": "it runs as a user who owns nothing",
+    "calls": "what a program of numbers does not need of the system's kernel is refused",
     "network": "there is no network",
+    "files": "of the file system only Python and the submission can be read, only its folder be written",
     "root": "of the file system only Python and the submission are there, the rest of the disk is not",
     "proc": "other processes cannot be seen",
 }
@@ -34,7 +37,7 @@ class Limits:
     cpu_seconds : int
         Processor time of one child over all its calls [s].
     memory_bytes : int
-        Address space of each process.
+        Address space of each process; and, where that can be watched, memory of all of them together.
     processes : int
         Processes and threads at a time.
     open_files : int

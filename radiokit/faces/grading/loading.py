@@ -1,6 +1,6 @@
 """Loading: reads a submission, script or notebook, and runs it piece by piece; what fails costs only itself.
 
-It is run by the child, and imports the standard library alone.
+It is run by the child, and imports the standard library alone, and a file beside it.
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ import __future__
 import ast
 import builtins
 import importlib.util
-import json
 import linecache
 import re
 import signal
@@ -20,19 +19,14 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-__all__ = ["Submission", "cells", "prepare", "starts", "told", "without_magics"]
+from radiokit.faces.grading.sources import cells, starts, without_magics
+
+__all__ = ["Submission", "prepare", "told"]
 
 PROBLEMS = 20
 NAMES = 60
-HIDDEN = "radiokit"
-"""A submission stands alone: the package that judges it is not there for it."""
 
-_LINE_MAGIC = re.compile(r"\s*([%!?]|\?{0,2}[\w.]+\?{1,2}\s*$)")
-_ASSIGNED_MAGIC = re.compile(r"\s*[\w, ]+=\s*[%!]\s*[\w./]")
 _FLOW = re.compile(r"(elif|else|except|finally)\b|[\s#)\]}]|$")
-_FRESH = re.compile(r"(async\s+def|def|class)\s+\w|@\w|import\s+\w|from\s+[\w.]+\s+import\b")
-_PYTHON_CELLS = ("time", "capture", "prun")
-_NOTED_MAGICS = ("run", "load", "loadpy", "paste", "macro")
 
 
 class _LateError(BaseException):
@@ -49,92 +43,6 @@ class _Silent:
 
     def __call__(self, *arguments: Any, **keywords: Any) -> None:
         return None
-
-
-class _Hider:
-    """Finds no module, and says of one that it is not there."""
-
-    def find_spec(self, name: str, path: Any = None, target: Any = None) -> None:
-        if name.split(".")[0] == HIDDEN:
-            raise ModuleNotFoundError(f"{HIDDEN} is not there for a submission, which must stand alone")
-
-
-def cells(text: str) -> list[str]:
-    r"""Return the sources of a notebook's code cells, of format 3 or 4.
-
-    >>> cells('{"cells": [{"cell_type": "code", "source": ["a = 1\\n", "b = 2"]}]}')
-    ['a = 1\nb = 2']
-    """
-    notebook = json.loads(text)
-    found = notebook.get("cells")
-    if found is None:
-        found = [cell for sheet in notebook["worksheets"] for cell in sheet["cells"]]
-    sources = [cell.get("source", cell.get("input", "")) for cell in found if cell["cell_type"] == "code"]
-    return ["".join(source).replace("\r\n", "\n") for source in sources]
-
-
-def starts(lines: list[str], *, magics: bool = False) -> list[bool]:
-    r"""Return on which lines a statement may begin: not within a string, brackets or a continued line.
-
-    What can only begin a statement at the margin, as ``def name``, ends brackets that were never closed.
-
-    >>> starts(["a = (1 +", "2)", "b = '''", "c'''", "d = 1 + \\", "2"])
-    [True, False, True, False, True, False]
-    """
-    depth, quote, continued, found = 0, "", False, []
-    for line in lines:
-        if depth and not quote and _FRESH.match(line):
-            depth = 0
-        found.append(not (depth or quote or continued))
-        if found[-1] and magics and (_LINE_MAGIC.match(line) or _ASSIGNED_MAGIC.match(line)):
-            continue
-        at, continued = 0, False
-        while at < len(line):
-            letter = line[at]
-            if letter == "\\":
-                continued = at == len(line) - 1
-                at += 2
-            elif quote:
-                ended = line.startswith(quote, at)
-                at += len(quote) if ended else 1
-                quote = "" if ended else quote
-            elif letter == "#":
-                break
-            elif letter in "\"'":
-                quote = letter * 3 if line.startswith(letter * 3, at) else letter
-                at += len(quote)
-            else:
-                depth = max(0, depth + (letter in "([{") - (letter in ")]}"))
-                at += 1
-        if len(quote) == 1 and not continued:
-            quote = ""  # it is an error, and ends here
-    return found
-
-
-def without_magics(source: str) -> tuple[str, list[tuple[int, str]]]:
-    r"""Return a cell without what only IPython understands, and what of it may be missed: line and words.
-
-    >>> without_magics("%matplotlib inline\nfor i in x:\n    !pip install y\nb = !ls")
-    ('pass\nfor i in x:\n    pass\npass', [(4, 'b = !ls')])
-    """
-    lines = source.split("\n")
-    first = next((i for i, line in enumerate(lines) if line.strip()), 0)
-    if lines[first].startswith("%%"):
-        name = (lines[first][2:].split() or [""])[0]
-        if name not in _PYTHON_CELLS:
-            return "", [(first + 1, lines[first].strip())]
-        lines[first] = ""
-    noted, dropping = [], False
-    for number, begins in enumerate(starts(lines, magics=True)):
-        line = lines[number]
-        assigned = _ASSIGNED_MAGIC.match(line)
-        if dropping or (begins and (assigned or _LINE_MAGIC.match(line))):
-            words = line.strip()
-            if not dropping and (assigned or words.lstrip("%").split(" ")[0] in _NOTED_MAGICS):
-                noted.append((number + 1, words))
-            lines[number] = "" if dropping else line[: len(line) - len(line.lstrip())] + "pass"
-            dropping = line.endswith("\\")
-    return "\n".join(lines), noted
 
 
 class Submission:
@@ -158,7 +66,8 @@ class Submission:
         self._path = path
         self._prefixes: dict[str, str] = {}
         self._flags = 0
-        if path.suffix != ".ipynb":
+        self._is_script = path.suffix.lower() != ".ipynb"
+        if self._is_script:
             self.module.__file__ = str(path)
         self.module.__dict__.update(get_ipython=_Silent, display=_Silent())
 
@@ -195,7 +104,7 @@ class Submission:
     def _parts(self) -> Iterator[tuple[str, str, str]]:
         """Yield for each part the beginning of its places, its file name and its source."""
         data = self._path.read_bytes()
-        if self._path.suffix != ".ipynb":
+        if self._is_script:
             yield "", self._path.name, self._decoded(data)
             return
         try:
@@ -303,7 +212,6 @@ def _parsed(lines: list[str], begin: int, end: int, name: str) -> list[ast.stmt]
 
 def prepare() -> None:
     """Make this process one in which submissions are run."""
-    sys.meta_path.insert(0, _Hider())
     vars(builtins).update(exit=sys.exit, quit=sys.exit)
     signal.signal(signal.SIGALRM, _late)
 

@@ -1,17 +1,19 @@
 """Namespaces: what Linux can keep from a process: other processes, the network, the rest of the disk.
 
-It is run by the launcher, before anything that is not trusted, and imports the standard library alone.
+It is run by the launcher, before anything that is not trusted, and imports little, as all that it imports is
+waited for.
 """
 
 from __future__ import annotations
 
-import contextlib
 import ctypes
 import os
-from pathlib import Path
-from typing import Any
 
-__all__ = ["control", "new_root", "unshare"]
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+__all__ = ["control", "fix_addresses", "new_root", "unshare"]
 
 NEWNS = 0x00020000
 NEWUTS = 0x04000000
@@ -23,6 +25,7 @@ MS_NOSUID, MS_NODEV, MS_BIND, MS_REC, MS_PRIVATE = 2, 4, 4096, 16384, 1 << 18
 MNT_DETACH = 2
 AT_FDCWD, AT_RECURSIVE, SYS_MOUNT_SETATTR = -100, 0x8000, 442
 ATTR_RDONLY, ATTR_NOSUID = 1, 2
+ADDR_NO_RANDOMIZE = 0x0040000
 PR_SET_PDEATHSIG, PR_CAPBSET_DROP, PR_SET_CHILD_SUBREAPER, PR_SET_NO_NEW_PRIVS = 1, 24, 36, 38
 
 _libc = ctypes.CDLL(None, use_errno=True)
@@ -62,11 +65,24 @@ def unshare() -> bool:
     if uid == 0 and _try("unshare", flags):
         return False
     _call("unshare", flags | NEWUSER)
-    with contextlib.suppress(OSError):
-        Path("/proc/self/setgroups").write_text("deny", encoding="ascii")
-    Path("/proc/self/uid_map").write_text(f"{uid} {uid} 1", encoding="ascii")
-    Path("/proc/self/gid_map").write_text(f"{gid} {gid} 1", encoding="ascii")
+    try:
+        _write("/proc/self/setgroups", "deny")
+    except OSError:
+        pass
+    _write("/proc/self/uid_map", f"{uid} {uid} 1")
+    _write("/proc/self/gid_map", f"{gid} {gid} 1")
     return True
+
+
+def _write(path: str, text: str) -> None:
+    with open(path, "w", encoding="ascii") as file:
+        file.write(text)
+
+
+def fix_addresses() -> None:
+    """Give programs that are started from here the same addresses each time, and so sets the same order."""
+    if hasattr(_libc, "personality"):
+        _libc.personality(ADDR_NO_RANDOMIZE)
 
 
 def _read_only(target: str) -> None:
@@ -91,26 +107,24 @@ def new_root(spec: dict[str, Any]) -> bool:
     )
     _mount("tmpfs", box, "tmpfs", MS_NOSUID | MS_NODEV, size)
     for path in spec["visible"]:
-        source, target = Path(path), Path(box + path)
-        if source.is_symlink() and source.parent == Path("/"):
-            target.symlink_to(source.readlink())
+        target = box + path
+        if os.path.islink(path) and os.path.dirname(path) == "/":
+            os.symlink(os.readlink(path), target)
             continue
-        if not source.exists() or target.exists():
+        if not os.path.exists(path) or os.path.lexists(target):
             continue
-        target.parent.mkdir(parents=True, exist_ok=True)
-        if source.is_dir():
-            target.mkdir()
-        else:
-            target.touch()
-        _mount(path, str(target), "none", MS_BIND | MS_REC)
-        _read_only(str(target))
+        os.makedirs(target if os.path.isdir(path) else os.path.dirname(target), exist_ok=True)
+        if not os.path.isdir(path):
+            os.close(os.open(target, os.O_CREAT | os.O_WRONLY))
+        _mount(path, target, "none", MS_BIND | MS_REC)
+        _read_only(target)
     for path in spec["hidden"]:
-        if Path(box + path).is_dir():
+        if os.path.isdir(box + path):
             _mount("tmpfs", box + path, "tmpfs", MS_NOSUID | MS_NODEV, "size=4k,mode=555")
     for path in ("/proc", "/home", "/tmp", "/dev/shm"):
-        Path(box + path).mkdir(parents=True, exist_ok=True)
+        os.makedirs(box + path, exist_ok=True)
     for path in ("/tmp", "/dev/shm"):
-        Path(box + path).chmod(0o1777)
+        os.chmod(box + path, 0o1777)
     proc = True
     try:
         _mount("proc", f"{box}/proc", "proc", MS_NOSUID | MS_NODEV)

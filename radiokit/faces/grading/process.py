@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import functools
+import importlib.util
 import json
+import marshal
 import os
 import selectors
 import shutil
@@ -26,11 +29,13 @@ from radiokit.faces.grading.result import steady
 __all__ = ["ChildProcess", "StoppedError"]
 
 HERE = Path(__file__).resolve().parent
-PROGRAMS = ("child", "protocol", "loading", "answers")
+PROGRAMS = ("child", "sources", "imports", "protocol", "loading", "answers")
+LAUNCHING = ("launcher", "descendants", "landlock", "namespaces", "rights", "seccomp")
 KEPT = 2000
 """How many characters of what is printed are kept."""
 SYSTEM = (
     *("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/nix/store", "/gnu/store", "/etc/ld.so.cache"),
+    "/etc/fonts",
     *("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom"),
 )
 
@@ -61,13 +66,15 @@ class ChildProcess:
         self._printed = 0
         self.folder = os.path.realpath(tempfile.mkdtemp(prefix="radiokit-"))
         Path(self.folder).chmod(0o755)
+        for name in (*PROGRAMS, *LAUNCHING):  # compiled once, as a class has many submissions
+            Path(self.folder, f"{name}.pyc").write_bytes(_compiled(name))
         self._results, results = os.pipe()
         try:
             self._process = process = subprocess.Popen(
                 _command(self.folder, limits, files, results, namespaces),
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE,
+                stderr=subprocess.STDOUT,  # what is printed keeps its order
                 pass_fds=(results,),
                 start_new_session=True,
                 env={"PATH": "/usr/bin:/bin", "LANG": "C.UTF-8"},
@@ -81,11 +88,10 @@ class ChildProcess:
             os.close(results)
         assert process.stdin is not None
         assert process.stdout is not None
-        assert process.stderr is not None
         self._requests = os.dup(process.stdin.fileno())
         process.stdin.close()
-        self._streams = (process.stdout, process.stderr)
-        for descriptor in (self._requests, self._results, *(each.fileno() for each in self._streams)):
+        self._printing = process.stdout
+        for descriptor in (self._requests, self._results, self._printing.fileno()):
             os.set_blocking(descriptor, False)
 
     def exchange(self, request: bytes, seconds: float) -> tuple[dict[str, Any], list[Array]]:
@@ -103,7 +109,7 @@ class ChildProcess:
         whole = Assembler(self._limits.answer_bytes)
         left = memoryview(request)
         with selectors.DefaultSelector() as selector:
-            for stream in (self._results, *(each.fileno() for each in self._streams)):
+            for stream in (self._results, self._printing.fileno()):
                 selector.register(stream, selectors.EVENT_READ)
             if left:
                 selector.register(self._requests, selectors.EVENT_WRITE)
@@ -135,10 +141,11 @@ class ChildProcess:
                             return whole.message()
 
     def printed(self) -> str:
-        """Return the beginning of what was printed since this was asked last."""
+        """Return the beginning of what was printed since this was asked last, as lines that can be shown."""
         text = steady(bytes(self._output).decode(errors="replace"), self.folder)
         self._output.clear()
-        return text[:KEPT]
+        lines = text[:KEPT].replace("\r\n", "\n").replace("\r", "\n").expandtabs()
+        return "".join(letter if letter.isprintable() or letter == "\n" else "?" for letter in lines)
 
     def close(self) -> None:
         """End the child and all its descendants, and remove what it wrote."""
@@ -153,8 +160,7 @@ class ChildProcess:
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
             process.wait()
-        for stream in self._streams:
-            stream.close()
+        self._printing.close()
         _remove(self.folder)
 
     def _keep(self, data: bytes) -> None:
@@ -165,9 +171,8 @@ class ChildProcess:
 
     def _drain(self) -> None:
         """Keep what was printed until now."""
-        for stream in self._streams:
-            with contextlib.suppress(StoppedError, BlockingIOError):
-                self._keep(os.read(stream.fileno(), 1 << 16))
+        with contextlib.suppress(StoppedError, BlockingIOError):
+            self._keep(os.read(self._printing.fileno(), 1 << 16))
 
     def _ending(self) -> str:
         """Say how the child came to its end."""
@@ -176,10 +181,21 @@ class ChildProcess:
         except subprocess.TimeoutExpired:
             return "closed its channel of answers"
         self._drain()
+        if code == -signal.SIGUSR1:
+            return f"used more than {self._limits.memory_bytes / 2**30:.3g} GiB of memory"
+        if code == -signal.SIGUSR2:
+            return f"ran more than {self._limits.processes} processes"
         number = -code if code < 0 else code - 128
         if number in set(signal.Signals):
             return f"was ended by {signal.Signals(number).name}"
         return f"ended its process with exit code {code}"
+
+
+@functools.cache
+def _compiled(name: str) -> bytes:
+    """Return one of the programs, as Python would keep it in a cache of its own."""
+    code = compile((HERE / f"{name}.py").read_bytes(), f"{name}.py", "exec", dont_inherit=True)
+    return importlib.util.MAGIC_NUMBER + bytes(12) + marshal.dumps(code)
 
 
 def _command(folder: str, limits: Limits, files: dict[str, str], results: int, namespaces: bool) -> list[str]:
@@ -196,12 +212,12 @@ def _command(folder: str, limits: Limits, files: dict[str, str], results: int, n
         "results": results,
         "uid": 61184 + os.getpid() % 4000,
         "needs": [python, np.__file__, os.__file__],
-        "programs": {f"{name}.py": str(HERE / f"{name}.py") for name in PROGRAMS},
+        "programs": {f"{name}.pyc": f"{folder}/{name}.pyc" for name in PROGRAMS},
         "files": files,
         "visible": visible,
         "hidden": [str(Path(folder).resolve()) for folder in radiokit.__path__],
     }
-    return [python, "-I", "-B", "-S", str(HERE / "launcher.py"), json.dumps(spec)]
+    return [python, "-I", "-B", "-S", f"{folder}/launcher.pyc", json.dumps(spec)]
 
 
 def _packages(site: str, visible: Sequence[str]) -> list[str]:

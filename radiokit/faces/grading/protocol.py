@@ -58,7 +58,7 @@ def pack(header: dict[str, Any], arrays: Sequence[Array] = ()) -> bytes:
             raise MalformedError(f"arrays of {array.dtype} are not carried")
         described.append([kind, list(array.shape)])
         parts.append(np.ascontiguousarray(array, dtype=kind).tobytes())
-    head = json.dumps({**header, "arrays": described}, ensure_ascii=False).encode(errors="replace")
+    head = json.dumps({**header, "arrays": described}, ensure_ascii=False).encode(errors="backslashreplace")
     if len(head) > HEADER_LIMIT:
         raise MalformedError(f"a header of {len(head)} bytes is too long")
     body = b"".join(parts)

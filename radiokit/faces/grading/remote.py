@@ -134,7 +134,7 @@ def open_isolated(target: str, parameters: Mapping[str, Any], limits: Limits | N
         When the target is no function in a file.
     """
     path, colon, name = target.rpartition(":")
-    if not colon or Path(path).suffix not in (".py", ".ipynb"):
+    if not colon or Path(path).suffix.lower() not in (".py", ".ipynb"):
         raise TargetError(f"cannot isolate {target!r}: only file.py:function is run in a sandbox")
     if not Path(path).is_file():
         raise TargetError(f"no such file: {path}")

@@ -28,6 +28,8 @@ STARTUP = 30.0
 """How long Python and NumPy may take to start [s]."""
 LARGEST = 1 << 28
 """Files of more bytes are no submission."""
+BRANCHING = 5.0
+"""How long a child may take to make a copy of itself [s]."""
 ENDING = 1.0
 """What is left to a child to say that it came to the end of its time [s]."""
 
@@ -99,6 +101,7 @@ class Sandbox:
         self._protections: tuple[str, ...] = ()
         self._loaded: Result | None = None
         self._budgets: list[_Budget] = []
+        self._apart = self._branched = False
         self._output = ""
 
     def __enter__(self) -> Sandbox:
@@ -212,8 +215,23 @@ class Sandbox:
         finally:
             self._budgets.pop()
 
+    @contextmanager
+    def apart(self) -> Iterator[None]:
+        """Let the calls inside begin from the submission as it was loaded; what they change is forgotten.
+
+        They take place in a copy of the process. What they write into files stays.
+        """
+        self._apart = True
+        try:
+            yield
+        finally:
+            self._apart = False
+            if self._branched:
+                self._branch(False)
+
     def close(self) -> None:
         """End the child and all its descendants, and remove what it wrote."""
+        self._branched = False
         child, self._child = self._child, None
         if child is not None:
             self._output = child.printed()
@@ -228,6 +246,10 @@ class Sandbox:
             loaded = self._loaded if failed and self._loaded is not None else self.load()
             if loaded.error:
                 return Result(error=f"could not be loaded: it {loaded.error}", protections=self._protections)
+        if self._apart and not self._branched:
+            branch = self._branch(True)
+            if branch.error:
+                return branch
         for budget in self._budgets:
             if budget.left < seconds:
                 seconds, late = budget.left, f"took longer than {budget.seconds:g} s in all"
@@ -238,6 +260,14 @@ class Sandbox:
         for budget in self._budgets:
             budget.left -= time.monotonic() - asked
         return replace(result, seconds=time.monotonic() - began)
+
+    def _branch(self, begins: bool) -> Result:
+        """Begin or end a copy of the process that the submission was loaded in."""
+        result = self._request({"branch": begins}, (), BRANCHING, "did not answer")
+        if result.error:  # the next call loads it anew
+            self.close()
+        self._branched = begins and result.ok
+        return result
 
     def _request(self, request: dict[str, Any], arrays: Sequence[Array], seconds: float, late: str) -> Result:
         """Ask the child, and return what becomes of it."""

@@ -12,17 +12,27 @@ import numpy as np
 from radiokit.faces.diagnosis.catalogue import CATALOGUE
 from radiokit.faces.diagnosis.diagnose import diagnose
 from radiokit.faces.diagnosis.result import Diagnosis
-from radiokit.faces.grading.finding import Callee, Finding, Mode
+from radiokit.faces.grading.arguments import argument_mistakes
+from radiokit.faces.grading.asking import asked, close, fitted, is_extreme, is_right, out_of_range
+from radiokit.faces.grading.evidence import clause, hint_for, joined, rows, wrong_at
+from radiokit.faces.grading.finding import Callee, Finding
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.result import Result
-from radiokit.faces.grading.words import say
+from radiokit.faces.grading.words import say, sentence
 from radiokit.facts.errors import ParameterError
 
 __all__ = ["Values", "hint_for"]
 
 SURE = 0.5
 """From which confidence on a misconception is named alone."""
-INPUTS_SHOWN = 4
+SLACK = 64
+"""How many roundings of its terms a careless formula may be off."""
+SINGLE, DOUBLE = 2e-5, 1e-6
+"""The relative deviation of a right formula with its digits lost, of numbers in float32 and others."""
+NAMES = {"float32": "single-precision", "float32-range": "single-precision", "constant": "constant-answer"}
+"""Diagnoses by sentences, where they differ."""
+FEWEST = 5
+"""How many answers it takes to tell something of them all."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,7 +40,7 @@ class Values:
     """Judges the numbers that a function returns.
 
     The function is handed all inputs at once; if it cannot bear that, or is wrong so, one by one. It may
-    return arrays, lists or numbers. It is asked twice.
+    return arrays, lists or numbers. It is asked twice, the second time in reverse order.
 
     Parameters
     ----------
@@ -54,6 +64,9 @@ class Values:
         ``theta``, ``distance``, ``solid_angle``.
     variants : mapping or callable, optional
         What wrong solutions give, by the name of the misconception: ``{name: f(**inputs)}``.
+    terms : callable, optional
+        ``terms(**inputs)`` gives the size of what a right but careless formula subtracts: an answer that is
+        off by its rounding is called imprecise.
 
     Raises
     ------
@@ -70,6 +83,7 @@ class Values:
     credit: Mapping[str, float] = field(default_factory=dict)
     context: Callable[..., Mapping[str, Any]] | None = None
     variants: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
+    terms: Callable[..., Any] | None = None
 
     def __post_init__(self) -> None:
         if not 0 <= self.rtol < 1:
@@ -91,23 +105,40 @@ class Values:
         shown: bool,
     ) -> Finding:
         """Judge a function: right, imprecise, or wrong and why."""
+        with np.errstate(all="ignore"):  # a wrong answer may be of any size
+            return self._judged(callee, rng, language, hints, shown)
+
+    def _judged(
+        self,
+        callee: Callee,
+        rng: np.random.Generator,
+        language: str,
+        hints: Mapping[str, Mapping[str, str]],
+        shown: bool,
+    ) -> Finding:
         given = {name: np.asarray(value) for name, value in self.inputs(rng).items()}
-        right = np.asarray(self.reference(**given), dtype=float)
+        right = np.atleast_1d(np.asarray(self.reference(**given), dtype=float))
         seed = int(rng.integers(1 << 32))
-        first, mode = _asked(callee, given, right, seed, self._allowed(right, self.rtol))
+        allowed = self._allowed(right, self.rtol)
+        first, mode = asked(callee, given, right, seed, allowed)
         if not first.ok:
-            return Finding(share=0.0, text=say(language, "call", function=callee.name, error=first.error))
-        answer, problem = _fitted(first, right, language)
+            return _raised(callee.name, first, given, language, hints)
+        answer, problem = fitted(first, right, language)
         if problem:
-            return Finding(share=0.0, text=problem)
-        good = _close(answer, right, self._allowed(right, self.rtol))
-        if good.all():
-            again = callee.call(*given.values(), mode=mode, seed=seed)
-            second, problem = _fitted(again, right, language) if again.ok else (answer, again.error)
-            if problem or not _close(second, right, self._allowed(right, self.rtol)).all():
-                return Finding(share=0.0, text=say(language, "not-repeatable"), diagnosis="not-repeatable")
+            return Finding(share=0.0, text=joined(problem))
+        good = close(answer, right, allowed)
+        if not good.all():
+            return self._wrong(answer, right, given, good, language=language, hints=hints, shown=shown)
+        turned = [array[::-1] if array.ndim else array for array in given.values()]
+        if any(array.ndim for array in turned):
+            right = right[::-1]
+        second = callee.call(*turned, mode=mode, seed=seed)
+        if not is_right(second, right, self._allowed(right, self.rtol)):
+            text = joined(say(language, "not-repeatable"))
+            return Finding(share=0.0, text=text, diagnosis="not-repeatable")
+        if mode == "batch":
             return Finding(share=1.0, text=say(language, "full"))
-        return self._wrong(answer, right, given, good, language=language, hints=hints, shown=shown)
+        return Finding(share=1.0, text=say(language, "full-one-by-one"))
 
     def _allowed(self, right: Array, rtol: float) -> Array:
         size = np.abs(right)
@@ -125,151 +156,125 @@ class Values:
         hints: Mapping[str, Mapping[str, str]],
         shown: bool,
     ) -> Finding:
-        """Say what is wrong with finite or infinite numbers of the right shape."""
+        """Say what is wrong with numbers of the right shape."""
         share = max(
-            (s for r, s in self.loose.items() if _close(answer, right, self._allowed(right, r)).all()),
+            (s for r, s in self.loose.items() if close(answer, right, self._allowed(right, r)).all()),
             default=0.0,
         )
-        finite = np.isfinite(answer)
-        if not finite.all():
-            worst = answer[~finite].flat[0]
-            value = "NaN" if math.isnan(worst) else "inf" if worst > 0 else "-inf"
-            text = say(language, "not-finite", value=value, bad=_rows(~finite), count=len(finite))
-            return Finding(share=0.0, text=text, diagnosis="not-finite", confidence=1.0)
+        key, values = self._known(answer, right, given, good)
+        if key:
+            name = NAMES.get(key, key)
+            text = joined(say(language, key, **values), hints.get(name, {}).get(language, ""))
+            return Finding(share=share, text=text, diagnosis=name, confidence=1.0)
+        full, count = wrong_at(answer, right, given, good, language, shown=shown)
         found = self._diagnosed(answer.astype(float), right, given, language) if right.ndim == 1 else None
-        bad = _rows(~good)
-        if found is not None and found.right:
-            with np.errstate(all="ignore"):
-                error = np.max(np.abs(answer - right) / np.abs(right))
-            key = "float32" if answer.dtype == np.float32 else "imprecise"
-            text = say(language, key, error=f"{error:.0e}", rtol=self.rtol)
-            return Finding(share=share, text=text, diagnosis="imprecise", confidence=1.0)
-        text = say(language, "wrong", bad=bad, count=len(right))
-        witness = _witness(answer, right, given, language, shown)
         if found is None or found.first is None:
-            notes = "; ".join(found.notes) if found is not None else ""
-            return Finding(share=share, text="; ".join(each for each in (text, notes, witness) if each))
+            notes = "; ".join(found.notes) if found is not None and shown and not found.right else ""
+            return Finding(share=share, text=joined(full, notes))
         first = found.first
-        share = max(share, self.credit.get(first.name, 0.0))
+        if first.name == "wrong-at-few":  # the evidence says more
+            return Finding(share=share, text=joined(full), diagnosis=first.name)
         if first.confidence < SURE or found.ambiguous:
-            likely = " / ".join(hint_for(each, hints, language) for each in found.suspicions[:2])
-            text = f"{text}; {say(language, 'one-of', names=likely)}"
+            likely = [clause(hint_for(each, hints, language, shown=shown)) for each in found.suspicions[:2]]
+            text = say(language, "one-of", names=" / ".join(likely))
+        elif " + " in first.name and first.name not in hints:
+            catalogue = {entry.name: entry.hint(language) for entry in CATALOGUE}
+            both = [hints.get(each, {}).get(language, catalogue[each]) for each in first.name.split(" + ")]
+            text = say(language, "both", names=" + ".join(map(clause, both)))
         else:
-            text = f"{hint_for(first, hints, language)} ({text})"
+            text = hint_for(first, hints, language, shown=shown)
+        best = joined(text, full)
         return Finding(
-            share=share,
-            text=f"{text}; {witness}" if witness else text,
+            share=max(share, self.credit.get(first.name, 0.0)),
+            text=best if len(best) > len(joined(text)) else joined(text, count),
             diagnosis=first.name,
             confidence=round(first.confidence, 2),
         )
 
+    def _known(
+        self, answer: Array, right: Array, given: Mapping[str, Array], good: Array
+    ) -> tuple[str, dict[str, Any]]:
+        """Return what is wrong where it is no misconception: digits, or the range of numbers."""
+        finite, size = np.isfinite(answer), np.abs(right)
+        if out_of_range(answer, right, given, good):
+            return "out-of-range", {"bad": rows(~good), "count": len(right)}
+        if answer.dtype == np.float32:
+            near = close(answer, right, SINGLE * size)
+            if out_of_range(answer, right, given, near, widest=1e15):
+                return "float32-range", {"bad": rows(~near), "count": len(right)}
+        if not finite.all():
+            worst = answer[~finite].flat[0]
+            value = "NaN" if math.isnan(worst) else "inf" if worst > 0 else "-inf"
+            return "not-finite", {"value": value, "bad": rows(~finite), "count": len(finite)}
+        numbers = answer.astype(float)
+        if len(right) > 1 and not np.ptp(numbers):
+            return ("constant", {"value": f"{numbers.flat[0]:.6g}"}) if np.ptp(right) else ("", {})
+        short = len(right) >= FEWEST and bool(np.all(numbers == numbers.astype(np.float32)))
+        single = short or answer.dtype == np.float32
+        eps = float(np.finfo(np.float32 if single else np.float64).eps)
+        terms = 0.0 if self.terms is None else np.abs(self.terms(**given))
+        near = np.maximum((SINGLE if single else DOUBLE) * size, SLACK * eps * terms)
+        if not np.all(np.abs(numbers - right) <= near):
+            return "", {}
+        deviations = (numbers / right - 1)[size > 0]
+        values = {"error": f"{np.max(np.abs(deviations), initial=0.0):.1g}", "rtol": self.rtol}
+        if len(deviations) >= FEWEST and np.ptp(deviations) < 0.01 * np.abs(deviations).min():
+            return "constant-rounded", values
+        return "float32" if single else "imprecise", values
+
     def _diagnosed(
         self, answer: Array, right: Array, given: Mapping[str, Array], language: str
     ) -> Diagnosis | None:
+        """Return what explains the answers or, if nothing does, those where the right one is not 0."""
         size = len(right)
         context = dict(self.context(**given)) if self.context is not None else {}
-        rows = {name: value for name, value in {**given, **context}.items() if _is_column(value, size)}
+        every = {**given, **context}
+        columns = {name: value for name, value in every.items() if _is_column(name, value, size)}
         others = {name: np.asarray(variant(**given), dtype=float) for name, variant in self.variants.items()}
+        usual = (*CATALOGUE, *argument_mistakes(self.reference, given, right))
 
         def reference(**inputs: Any) -> Any:
             return self.reference(**{name: inputs.get(name, given[name]) for name in given})
 
         found: Diagnosis | None = None
+        lit = right != 0
         for variants in ([others] if others else []) + [reference]:
             found = diagnose(
-                answer,
-                right,
-                inputs=rows,
-                variants=variants,
-                language=language,
-                catalogue=CATALOGUE,
+                answer, right, inputs=columns, variants=variants, language=language, catalogue=usual
             )
             if found.right or found.suspicions:
-                break
-        return found
+                return found
+        if lit.all() or np.count_nonzero(lit & (answer != 0)) < FEWEST:
+            return found
+        some = {name: value[lit] if np.ndim(value) else value for name, value in columns.items()}
+        lit_given = {name: value[lit] if value.ndim else value for name, value in given.items()}
+        partly = diagnose(
+            answer[lit],
+            right[lit],
+            inputs=some,
+            variants={name: values[lit] for name, values in others.items()},
+            language=language,
+            catalogue=(*CATALOGUE, *argument_mistakes(self.reference, lit_given, right[lit])),
+        )
+        return partly if partly.suspicions else found
 
 
-def hint_for(suspicion: Any, hints: Mapping[str, Mapping[str, str]], language: str) -> str:
-    """Return what is said of a suspicion: the question's own hint before the catalogue's."""
-    hint = hints.get(suspicion.name, {}).get(language)
-    detail = f" ({suspicion.detail})" if suspicion.detail else ""
-    return f"{hint or suspicion.message.rstrip('.')}{detail}"
+def _raised(
+    name: str,
+    result: Result,
+    given: Mapping[str, Array],
+    language: str,
+    hints: Mapping[str, Mapping[str, str]],
+) -> Finding:
+    """Say what a function did instead of answering, and why if its inputs leave the range of numbers."""
+    text = say(language, "call", function=name, error=result.error)
+    if result.raised in ("OverflowError", "ZeroDivisionError") and any(map(is_extreme, given.values())):
+        hint = hints.get("out-of-range", {}).get(language, "")
+        text = f"{text}. {sentence(hint)}" if hint else text
+        return Finding(share=0.0, text=text, diagnosis="out-of-range", confidence=1.0)
+    return Finding(share=0.0, text=text)
 
 
-def _asked(
-    callee: Callee, given: Mapping[str, Array], right: Array, seed: int, allowed: Array
-) -> tuple[Result, Mode]:
-    """Return the answer to all inputs at once or, if it is none or wrong and another is better, one by one."""
-    arrays = list(given.values())
-    best = callee.call(*arrays, mode="batch", seed=seed)
-    mode: Mode = "batch"
-    if _is_right(best, right, allowed) or not any(array.ndim for array in arrays):
-        return best, mode
-    one_by_one: tuple[Mode, ...] = ("scalar", "single")
-    for other in one_by_one:
-        result = callee.call(*arrays, mode=other, seed=seed)
-        if _is_right(result, right, allowed) or (_usable(result, right) and not _usable(best, right)):
-            best, mode = result, other
-        if _is_right(best, right, allowed):
-            break
-    return best, mode
-
-
-def _usable(result: Result, right: Array) -> bool:
-    return result.ok and len(result.values) == 1 and result.values[0].size == right.size
-
-
-def _is_right(result: Result, right: Array, allowed: Array) -> bool:
-    if not _usable(result, right) or result.values[0].dtype.kind == "c":
-        return False
-    return bool(_close(result.values[0].reshape(right.shape), right, allowed).all())
-
-
-def _fitted(result: Result, right: Array, language: str) -> tuple[Array, str]:
-    """Return the answer in the shape of what is right, or what is wrong with it."""
-    (answer, *more) = result.values
-    if more:
-        shape = " × ".join(str(value.shape) for value in result.values)
-        return answer, say(language, "shape", shape=shape, expected=right.shape)
-    if answer.dtype.kind == "c":
-        return answer, say(language, "complex")
-    if answer.size != right.size or (answer.ndim > right.ndim and max(answer.shape) != answer.size):
-        return answer, say(language, "shape", shape=answer.shape, expected=right.shape)
-    if answer.dtype.kind != "f":
-        answer = answer.astype(float)
-    return answer.reshape(right.shape), ""
-
-
-def _close(answer: Array, right: Array, allowed: Array) -> Array:
-    with np.errstate(all="ignore"):
-        close: Array = np.abs(answer.astype(float) - right) <= allowed
-    return close
-
-
-def _rows(bad: Array) -> int:
-    return int(np.count_nonzero(bad.reshape(len(bad), -1).any(axis=1)))
-
-
-def _is_column(value: Any, size: int) -> bool:
-    shape = np.shape(value)
-    return shape in ((), (size,), (size, 3))
-
-
-def _witness(answer: Array, right: Array, given: Mapping[str, Array], language: str, shown: bool) -> str:
-    """Return the input where the answer is farthest off, and what it gives there."""
-    with np.errstate(all="ignore"):
-        off = np.abs(answer - right) / np.maximum(np.abs(right), 1e-300)
-    row = int(np.argmax(off.reshape(len(off), -1).max(axis=1)))
-    named = [f"{name} = {_brief(value[row] if value.ndim else value)}" for name, value in given.items()]
-    inputs = ", ".join(named[:INPUTS_SHOWN])
-    values = {"inputs": inputs, "value": _brief(answer[row]), "right": _brief(right[row])}
-    return say(language, "witness" if shown else "witness-hidden", **values)
-
-
-def _brief(value: Any) -> str:
-    array = np.asarray(value)
-    if array.ndim == 0:
-        return f"{array.item():.6g}"
-    if array.size > 3:
-        return "[…]"
-    return "(" + ", ".join(f"{each:.4g}" for each in array.ravel().tolist()) + ")"
+def _is_column(name: str, value: Any, size: int) -> bool:
+    """Return whether the diagnosis can take an input."""
+    return np.shape(value) in ((), (size,)) or (name in ("wi", "wo") and np.shape(value) == (size, 3))

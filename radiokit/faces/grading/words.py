@@ -8,47 +8,87 @@ from typing import Any
 from radiokit.faces.diagnosis.misconception import LANGUAGES
 from radiokit.facts.errors import ParameterError
 
-__all__ = ["SENTENCES", "Words", "checked_language", "say", "words"]
+__all__ = ["SENTENCES", "Words", "checked_language", "say", "sentence", "words"]
 
 Words = Mapping[str, str]
 """A text by language, ``{"en": ..., "ru": ...}``."""
 
 SENTENCES: Mapping[str, Words] = {
     "full": {"en": "right", "ru": "верно"},
+    "full-one-by-one": {
+        "en": "right, called with one input at a time",
+        "ru": "верно при вызове для каждого набора данных отдельно",
+    },
     "wrong": {
-        "en": "differs from what is right at {bad} of {count} inputs",
-        "ru": "отличается от верного на {bad} из {count} входов",
+        "en": "wrong at {bad} of {count} {noun}",
+        "ru": "неверно для {bad} из {count} {noun}",
     },
     "imprecise": {
-        "en": "the formula is right, but digits are lost: the relative error is up to {error}, "
-        "and {rtol:g} is asked for",
-        "ru": "формула верна, но теряются цифры: относительная ошибка до {error}, а требуется {rtol:g}",
+        "en": "digits are lost: the relative error reaches {error}, and {rtol:g} is allowed",
+        "ru": "теряются значащие цифры: относительная ошибка достигает {error}, а допускается {rtol:g}",
     },
     "float32": {
-        "en": "the formula is right, but it is computed in float32, and {rtol:g} is asked for: use float64",
-        "ru": "формула верна, но вычислена в float32, а требуется {rtol:g}: используйте float64",
+        "en": "this is computed in float32: the relative error reaches {error}, and {rtol:g} is allowed; "
+        "use float64",
+        "ru": "вычислено в float32: относительная ошибка достигает {error}, а допускается {rtol:g}; "
+        "используйте float64",
+    },
+    "float32-range": {
+        "en": "the formula is right, but numbers leave the range of float32 at {bad} of {count} {noun}: "
+        "use float64",
+        "ru": "формула верна, но числа выходят за пределы float32 ({bad} из {count} {noun}): "
+        "используйте float64",
+    },
+    "constant-rounded": {
+        "en": "a constant is rounded, such as π: the relative error is {error} at all inputs, "
+        "and {rtol:g} is allowed",
+        "ru": "округлена константа, например π: относительная ошибка всюду {error}, а допускается {rtol:g}",
+    },
+    "out-of-range": {
+        "en": "the formula is right, but an intermediate number overflows or underflows at {bad} of {count} "
+        "{noun}: change the order of the operations",
+        "ru": "формула верна, но промежуточное число слишком велико или слишком мало для float64 "
+        "({bad} из {count} {noun}): измените порядок действий",
+    },
+    "constant": {
+        "en": "the answer is {value} for all inputs: it does not depend on them",
+        "ru": "ответ равен {value} для всех входных данных: он от них не зависит",
     },
     "not-finite": {
-        "en": "gives {value} at {bad} of {count} inputs",
-        "ru": "даёт {value} на {bad} из {count} входов",
+        "en": "gives {value} at {bad} of {count} {noun}",
+        "ru": "даёт {value} для {bad} из {count} {noun}",
+    },
+    "swapped": {
+        "en": "your function takes its arguments in another order: see the signature",
+        "ru": "аргументы вашей функции стоят в другом порядке: сверьтесь с условием",
+    },
+    "ignored": {
+        "en": "your answer does not depend on one of its arguments",
+        "ru": "ваш ответ не зависит от одного из аргументов",
     },
     "shape": {
         "en": "returns an array of shape {shape} where {expected} is right",
-        "ru": "возвращает массив формы {shape}, а верна форма {expected}",
+        "ru": "возвращает массив формы {shape}, а нужна форма {expected}",
     },
-    "complex": {"en": "returns complex numbers", "ru": "возвращает комплексные числа"},
+    "complex": {
+        "en": "returns complex numbers, and real ones are asked for",
+        "ru": "возвращает комплексные числа, а нужны вещественные",
+    },
     "not-repeatable": {
-        "en": "gives other values when it is asked the same again",
-        "ru": "на тот же вопрос во второй раз отвечает иначе",
+        "en": "gives other values when it is asked again in another order: it must depend on its arguments "
+        "alone",
+        "ru": "на те же данные в другом порядке отвечает иначе: ответ должен зависеть только от аргументов",
     },
     "witness": {
         "en": "at {inputs} it gives {value}, right is {right}",
-        "ru": "при {inputs} даёт {value}, верно {right}",
+        "ru": "при {inputs} получено {value}, верно {right}",
     },
     "witness-hidden": {
         "en": "at {inputs} it gives {value}",
-        "ru": "при {inputs} даёт {value}",
+        "ru": "при {inputs} получено {value}",
     },
+    "number": {"en": "input no. {row}", "ru": "наборе данных № {row}"},
+    "both": {"en": "two mistakes at once: {names}", "ru": "две ошибки сразу: {names}"},
     "one-of": {"en": "one of these: {names}", "ru": "одно из: {names}"},
     "not-loaded": {"en": "the submission {error}", "ru": "работа не загрузилась: {error}"},
     "no-function": {
@@ -88,10 +128,34 @@ def checked_language(language: str) -> str:
 def say(language: str, key: str, **values: Any) -> str:
     """Return a sentence.
 
+    A ``count`` also gives the noun that stands after it, ``{noun}``, in its right form.
+
+    >>> say("en", "wrong", bad=1, count=1)
+    'wrong at 1 of 1 input'
     >>> say("ru", "wrong", bad=2, count=40)
-    'отличается от верного на 2 из 40 входов'
+    'неверно для 2 из 40 наборов данных'
     """
+    if "count" in values:
+        values.setdefault("noun", _noun(language, values["count"]))
     return SENTENCES[key][language].format(**values)
+
+
+def sentence(text: str) -> str:
+    """Return a text as one sentence: a capital first, unless it is a symbol, and one full stop last.
+
+    >>> sentence("wrong at 1 of 2 inputs"), sentence("π is lost."), sentence("why?")
+    ('Wrong at 1 of 2 inputs.', 'π is lost.', 'Why?')
+    """
+    text = text.strip().rstrip(".;")
+    first = text[:1] if "Α" <= text[:1] <= "ω" else text[:1].upper()
+    return f"{first}{text[1:]}{'' if text.endswith(('?', '!')) else '.'}" if text else ""
+
+
+def _noun(language: str, count: int) -> str:
+    """Return what is counted, after ``of 40`` or ``из 40``: the genitive in Russian."""
+    if language == "ru":
+        return "набора данных" if count % 10 == 1 and count % 100 != 11 else "наборов данных"
+    return "input" if count == 1 else "inputs"
 
 
 def words(name: str, given: Words) -> Words:
