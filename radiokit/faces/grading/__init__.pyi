@@ -3,9 +3,9 @@ from .assignment import assignment_from_source as assignment_from_source
 from .assignment import list_assignments as list_assignments
 from .assignment import load_assignment as load_assignment
 from .assignment import student_rng as student_rng
-from .estimator import Estimator as Estimator
 from .classroom.run import ClassGrades as ClassGrades
 from .classroom.run import grade_class as grade_class
+from .estimator import Estimator as Estimator
 from .finding import Callee as Callee
 from .finding import Finding as Finding
 from .finding import Judge as Judge
