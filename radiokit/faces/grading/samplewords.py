@@ -30,8 +30,8 @@ SENTENCES: Mapping[str, Words] = {
         "ru": "верно: каждый отсчёт даёт точное значение, и ошибка это отражает",
     },
     "pair": {
-        "en": "{function} must return two numbers: return value, standard_error",
-        "ru": "{function} должна возвращать два числа: return value, standard_error",
+        "en": "the function {function} must return two numbers: return value, standard_error",
+        "ru": "функция {function} должна возвращать два числа: return value, standard_error",
     },
     "not-a-number": {
         "en": "gives value {value} and standard error {error} at {inputs}",
@@ -87,12 +87,12 @@ SENTENCES: Mapping[str, Words] = {
         "ru": "верно: направления ({samples}) распределены с заданной плотностью",
     },
     "directions-shape": {
-        "en": "{function} returns an array of shape {shape} where {expected} is right",
-        "ru": "{function} возвращает массив формы {shape}, а верна форма {expected}",
+        "en": "the function {function} returns an array of shape {shape} where {expected} is right",
+        "ru": "функция {function} возвращает массив формы {shape}, а верна форма {expected}",
     },
     "directions-finite": {
-        "en": "{function} gives NaN or inf for {bad} of {count} inputs, as at {inputs}",
-        "ru": "{function} даёт NaN или inf на {bad} из {count} входов, например при {inputs}",
+        "en": "the function {function} gives NaN or inf for {bad} of {count} inputs, as at {inputs}",
+        "ru": "функция {function} даёт NaN или inf на {bad} из {count} входов, например при {inputs}",
     },
     "not-unit": {
         "en": "directions are not of unit length: {length} at {inputs}",
@@ -124,12 +124,12 @@ SENTENCES: Mapping[str, Words] = {
         "ru": "плотность неверна для {bad} из {count} направлений; её интеграл по полусфере равен {integral}",
     },
     "density-negative": {
-        "en": "{function} gives a negative density",
-        "ru": "{function} даёт отрицательную плотность",
+        "en": "the function {function} gives a negative density",
+        "ru": "функция {function} даёт отрицательную плотность",
     },
     "density-zero": {
-        "en": "{function} gives 0 for a direction that was sampled",
-        "ru": "{function} даёт 0 для направления, попавшего в выборку",
+        "en": "the function {function} gives 0 for a direction that was sampled",
+        "ru": "функция {function} даёт 0 для направления, попавшего в выборку",
     },
     "weights": {
         "en": "the mean of f/p over the samples is {value}, right is {right}: samples and density disagree",
