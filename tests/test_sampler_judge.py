@@ -103,6 +103,27 @@ def test_right_lobes_pass_however_narrow(
         assert _found(judge, callee, rng).share == 1
 
 
+@pytest.mark.parametrize("edge", [0.3, 0.8, 0.99])
+def test_a_density_may_have_an_edge(edge: float, rng: np.random.Generator, local_callee: Any) -> None:
+    def cone(w: Any) -> Any:
+        return (w[:, 2] > edge) / (2 * np.pi * (1 - edge))
+
+    draws = Draws(local_callee(lambda u: around(1 - (1 - edge) * u[:, 0], u[:, 1])), "", {}, "en")
+    cells = cells_of_density(cone)
+    lowest = [min(sampled(draws, cells, rng.random((1 << 15, 2)), {}).p_values().values()) for _ in range(6)]
+    assert min(lowest) > 1e-4
+    assert np.median(lowest) > 0.05
+    assert _found(_judge(density=cone), draws.callee, rng).share == 1
+    narrower = local_callee(lambda u: around(1 - 0.9 * (1 - edge) * u[:, 0], u[:, 1]))
+    assert _found(_judge(density=cone), narrower, rng).share == 0
+
+
+def test_a_density_that_is_none_is_the_teachers_fault(rng: np.random.Generator, local_callee: Any) -> None:
+    judge = _judge(density=lambda w: np.maximum(w[:, 2], 0.0))
+    with pytest.raises(ParameterError, match="integral 1 over the hemisphere"):
+        _found(judge, local_callee(polar), rng)
+
+
 WRONG: dict[str, tuple[Map, str, float]] = {
     "uniform": (lambda u: around(u[:, 0], u[:, 1]), "uniform-instead", 0.0),
     "no root": (lambda u: around(np.sqrt(1 - u[:, 0] ** 2), u[:, 1]), "root-forgotten", 0.0),

@@ -17,6 +17,7 @@ from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.runs import UnusableError
 from radiokit.faces.grading.samplewords import line, slip, tell
 from radiokit.faces.grading.words import say
+from radiokit.facts.errors import ParameterError
 from radiokit.measure.slope import find_lobe
 from radiokit.measure.statistics import chi_square
 
@@ -27,6 +28,12 @@ UNIT = 1e-5
 
 NEAR, FAR, TORN = 1e-3, 0.2, 0.05
 """Points this near in the square may lie this far apart on the sphere in only this share of cases."""
+
+SMOOTH, EDGED = 1e-4, 1e-2
+"""By how much the integral of a density may seem off: before its cells are refined, and after that."""
+
+REFINED = 1_000_000
+"""Evaluations that refining may cost."""
 
 Density = Callable[[Array], Array]
 
@@ -168,10 +175,19 @@ class Fit:
         cells = self.cells
         if density is not None:
             cells = Cells(density, cells.aim, cells.width, cells.retro)
-        shares = np.maximum(cells.shares()[0], 0.0)
+        shares = cells.shares()[0]
         rest = 1 - float(shares.sum())
+        if density is None and abs(rest) > SMOOTH:  # an edge runs through cells: the samples show where
+            shares = cells.refined(self.directions, self.total, REFINED).shares
+            rest = 1 - float(shares.sum())
+            if abs(rest) > EDGED:
+                raise ParameterError("density", f"{1 - rest:.4g}", "of the integral 1 over the hemisphere")
         # What a smooth density leaves is rounding; that of no density at all must not divide by 0.
-        return np.append(shares, rest if rest > 1e-6 else 0.0) * self.total + 1e-12
+        return (
+            np.append(np.maximum(shares, 0.0), rest if rest > SMOOTH and density is not None else 0.0)
+            * self.total
+            + 1e-12
+        )
 
 
 def _joined(cells: Array, axis: tuple[int, ...]) -> Array:

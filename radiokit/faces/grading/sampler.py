@@ -83,7 +83,7 @@ class Sampler:
     Raises
     ------
     ParameterError
-        When an argument is out of its range.
+        When an argument is out of its range; while judging, when the integral of ``density`` is not 1.
 
     Examples
     --------
