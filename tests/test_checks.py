@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 import pytest
 
@@ -418,6 +420,36 @@ def test_check_refuses_unknown_laws_and_bad_numbers():
         check(lambert(1.0), seconds=0)
     with pytest.raises(ParameterError, match="tolerance = -1"):
         check(lambert(1.0), tolerance=-1)
+    for wrong in (999, 1e6):
+        with pytest.raises(ParameterError, match=r"evaluations = .* an integer of at least 1000, or None"):
+            check(lambert(1.0), evaluations=wrong)
+
+
+def timeless(data):
+    if isinstance(data, dict):
+        return {name: timeless(value) for name, value in data.items() if name != "seconds"}
+    return [timeless(each) for each in data] if isinstance(data, list) else data
+
+
+def test_a_budget_in_evaluations_makes_a_report_that_no_clock_can_change(monkeypatch):
+    quick = check(blinn_phong, evaluations=50_000)
+    hours = iter(range(0, 10**9, 3600))
+    monkeypatch.setattr(time, "perf_counter", lambda: float(next(hours)))
+    two = check(blinn_phong, evaluations=50_000)
+    assert timeless(two.to_json()) == timeless(quick.to_json())
+    assert two["energy"].outcome is Outcome.VIOLATED
+    assert not any("coarser" in note for note in two.notes)
+    slow = check(blinn_phong)  # which believes the clock
+    assert slow["values"].evaluations < quick["values"].evaluations
+    assert "searches are coarser" in slow.notes[0]
+
+
+def test_more_evaluations_are_a_finer_search():
+    coarse, fine = (check(lambert(1.0), evaluations=count)["energy"] for count in (30_000, 1_000_000))
+    assert coarse.evaluations < 40_000 < 300_000 < fine.evaluations < 700_000
+    assert (coarse.outcome, fine.outcome) == (Outcome.INCONCLUSIVE, Outcome.HOLDS)
+    assert coarse.details["scan_step_deg"] > 3 > 0.2 > fine.details["scan_step_deg"]
+    assert check(lambert(1.0), laws=["energy"], evaluations=1 << 60)["energy"].evaluations < 16_000_000
 
 
 def test_polar_gives_unit_vectors():

@@ -99,6 +99,9 @@ def test_phong_over_cosine_is_not_reciprocal_and_its_witness_shows_it(folder, ru
 def test_parameters_reach_models_and_functions(folder, run):
     assert run("check", "theirs.py:lambert", "--reflectance", "1.5")[0] == 1
     assert run("check", "theirs.py:lambert", "--reflectance=0.9")[0] == 0
+    code, out, _ = run("check", "theirs.py:lambert", "--reflectance", "1.5", "--evaluations=30000", "--json")
+    assert code == 1
+    assert json.loads(out)["verdicts"][0]["details"]["pairs"] < 1000
     code, out, err = run("albedo", "ggx", "--alpha", "1", "--theta", "60", "--json")
     assert (code, err) == (0, "")
     assert json.loads(out)["value"] == pytest.approx(0.450693855665945, rel=1e-12)

@@ -1,4 +1,4 @@
-"""The lectures: every notebook runs from top to bottom, without an error or a word on standard error."""
+"""The lectures and assignments: every notebook runs from top to bottom, without a word on standard error."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ import nbformat
 import pytest
 from nbclient import NotebookClient
 
-LECTURES = sorted((Path(__file__).parent.parent / "lectures").glob("*.ipynb"))
+FOLDER = Path(__file__).parent.parent / "lectures"
+LECTURES = sorted([*FOLDER.glob("*.ipynb"), *FOLDER.glob("assignments/*.ru.ipynb")])
 
 
 @pytest.mark.parametrize("path", LECTURES, ids=lambda path: path.stem)
@@ -31,7 +32,7 @@ def test_the_notebook_runs(path, missing_opengl):
             assert "image/png" in output.data
 
 
-@pytest.mark.parametrize("path", LECTURES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", sorted(FOLDER.rglob("*.ipynb")), ids=lambda path: path.stem)
 def test_the_notebook_is_kept_without_outputs(path):
     notebook = nbformat.read(path, as_version=4)
     assert not [cell for cell in notebook.cells if cell.get("outputs") or cell.get("execution_count")]

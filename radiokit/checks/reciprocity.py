@@ -62,7 +62,8 @@ def reciprocity(f: BSDF, *, count: int = 1 << 16, tolerance: float = TOLERANCE, 
     skipped = int((~usable).sum())
     wi, wo, f_io, f_oi = wi[usable], wo[usable], f_io[usable], f_oi[usable]
     tolerance = max(tolerance, 64 * f.precision)
-    floor = max(FLOOR, NEGLIGIBLE * float(np.mean((f_io + f_oi)[::4])))  # every fourth pair is uniform
+    uniform = (f_io + f_oi)[::4]  # every fourth pair is
+    floor = max(FLOOR, NEGLIGIBLE * float(np.mean(uniform)) if len(uniform) else 0.0)
     severity = _severity(f_io, f_oi, floor)
     order = np.argsort(-severity, kind="stable")
     order = order[severity[order] > tolerance]

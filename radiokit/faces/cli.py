@@ -14,6 +14,7 @@ from radiokit.faces.console import fail, progress_bar, show_json, show_report, s
 from radiokit.faces.derive import derive
 from radiokit.faces.grading.classroom.command import grade_class
 from radiokit.faces.grading.command import grade
+from radiokit.faces.grading.handout.command import assignment
 from radiokit.faces.lecture import lecture
 from radiokit.faces.models import models
 from radiokit.faces.render.command import render
@@ -78,6 +79,9 @@ def check(
     law: Annotated[list[str] | None, typer.Option(help="Only this law; may be repeated.")] = None,
     tolerance: Annotated[float, typer.Option(help="How far beyond a limit a value may lie.")] = 1e-9,
     seconds: Annotated[float, typer.Option(help="Time aimed at for a slow function.")] = 60.0,
+    evaluations: Annotated[
+        int | None, typer.Option(help="Evaluations aimed at, in place of a time: the same on any machine.")
+    ] = None,
     isolated: Annotated[bool, typer.Option("--isolated", help="Run file.py:function in a sandbox.")] = False,
 ) -> None:
     """Check a BSDF for reciprocity, energy conservation and more; its parameters go as --NAME VALUE."""
@@ -95,7 +99,14 @@ def check(
         else:
             model = _load(target, context)
         progress = stack.enter_context(progress_bar("checking", not json))
-        report = judge(model, laws=law or LAWS, tolerance=tolerance, seconds=seconds, progress=progress)
+        report = judge(
+            model,
+            laws=law or LAWS,
+            tolerance=tolerance,
+            seconds=seconds,
+            evaluations=evaluations,
+            progress=progress,
+        )
     if json:
         show_json(report.to_json())
     else:
@@ -196,6 +207,7 @@ def _show_case(each: Any) -> None:
     write(f"  methods: {', '.join(each.methods)}")
 
 
+app.command()(assignment)
 app.command()(bench)
 app.command()(derive)
 app.command()(grade)

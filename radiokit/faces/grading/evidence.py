@@ -80,7 +80,7 @@ def wrong_at(
 ) -> tuple[str, str]:
     """Return how often an answer is wrong, with the worst input and what comes out there, and without."""
     count = say(language, "wrong", bad=rows(~good), count=len(right))
-    row = _worst(answer, right)
+    row = _worst(answer, right, good)
     named = [f"{name} = {_brief(_at(value, row))}" for name, value in given.items() if _is_short(value)]
     value, truth = _told_apart(answer[row], right[row])
     full = count
@@ -95,9 +95,10 @@ def wrong_at(
     return full, count
 
 
-def _worst(answer: Array, right: Array) -> int:
-    """Return the first of the inputs where the answer is farthest off."""
+def _worst(answer: Array, right: Array, good: Array) -> int:
+    """Return the first of the inputs where the answer is farthest off, and by more than is allowed."""
     off = np.abs(answer - right) / np.maximum(np.maximum(np.abs(right), np.abs(answer)), 1e-300)
+    off = np.where(good, 0.0, off)
     return int(np.argmax(np.round(np.nan_to_num(off.reshape(len(off), -1).max(axis=1)), 6)))
 
 

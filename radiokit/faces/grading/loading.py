@@ -19,7 +19,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from radiokit.faces.grading.sources import cells, starts, without_magics
+from radiokit.faces.grading.sources import cells, starts, without_magics, without_tools
 
 __all__ = ["Submission", "prepare", "told"]
 
@@ -123,6 +123,7 @@ class Submission:
             return data.decode("utf-8", errors="replace").replace("\r\n", "\n")
 
     def _statements(self, prefix: str, name: str, source: str) -> Iterator[ast.stmt]:
+        source = without_tools(source)
         try:
             body = ast.parse(source, name).body
         except (SyntaxError, ValueError, RecursionError, MemoryError):

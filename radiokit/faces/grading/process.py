@@ -20,17 +20,21 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 import radiokit
-from radiokit.faces.grading.limits import Limits
-from radiokit.faces.grading.protocol import Array, Assembler
+from radiokit.faces.grading.limits import PROTECTIONS, Limits
+from radiokit.faces.grading.protocol import Array, Assembler, MalformedError, plain_text
 from radiokit.faces.grading.result import steady
+from radiokit.facts.errors import ParameterError, RadiokitError
 
-__all__ = ["ChildProcess", "StoppedError"]
+__all__ = ["ChildProcess", "LateError", "StoppedError", "carried", "started"]
 
 HERE = Path(__file__).resolve().parent
 PROGRAMS = ("child", "sources", "imports", "protocol", "loading", "answers")
 LAUNCHING = ("launcher", "descendants", "landlock", "namespaces", "rights", "seccomp")
+STARTUP = 30.0
+"""How long Python may take to start [s]."""
 KEPT = 2000
 """How many characters of what is printed are kept."""
 SYSTEM = (
@@ -61,6 +65,7 @@ class ChildProcess:
     """
 
     def __init__(self, limits: Limits, files: dict[str, str], *, namespaces: bool) -> None:
+        self.protections: tuple[str, ...] = ()
         self._limits = limits
         self._output = bytearray()
         self._printed = 0
@@ -189,6 +194,44 @@ class ChildProcess:
         if number in set(signal.Signals):
             return f"was ended by {signal.Signals(number).name}"
         return f"ended its process with exit code {code}"
+
+
+def started(limits: Limits, files: dict[str, str], levels: list[bool]) -> ChildProcess:
+    """Return a child behind the highest walls that can be built; its ``protections`` say which.
+
+    ``levels`` are to be tried in turn, whether namespaces are asked for; one that fails is taken out.
+
+    Raises
+    ------
+    RadiokitError
+        When none can be started.
+    """
+    while True:
+        child = ChildProcess(limits, files, namespaces=levels[0])
+        try:
+            ready = child.exchange(b"", STARTUP)[0].get("ready")
+            if isinstance(ready, list):
+                child.protections = tuple(name for name in PROTECTIONS if name in ready)
+                return child
+            told = "it is not ready"
+        except (StoppedError, MalformedError) as error:
+            told = plain_text(f"{error} {child.printed()}")
+        except BaseException:
+            child.close()
+            raise
+        child.close()
+        if len(levels) == 1:
+            raise RadiokitError(f"no sandbox can be started here: {told}")
+        levels.pop(0)
+
+
+def carried(given: npt.ArrayLike) -> Array:
+    """Return an argument as an array of a type that messages carry."""
+    array = np.asarray(given)
+    kind = {"i": "<i8", "u": "<i8", "b": "|b1", "c": "<c16", "f": "<f8"}.get(array.dtype.kind)
+    if kind is None or (array.dtype.kind == "u" and array.size and array.max() > np.iinfo("i8").max):
+        raise ParameterError("arrays", array.dtype, "numbers of at most 64 bits")
+    return array.astype("<f4" if array.dtype == np.float32 else kind)
 
 
 @functools.cache

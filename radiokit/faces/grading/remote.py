@@ -19,7 +19,7 @@ from radiokit.faces.grading.protocol import plain_text
 from radiokit.faces.grading.sandbox import Sandbox
 from radiokit.facts.errors import CallableError, TargetError, suggestion
 
-__all__ = ["open_isolated", "remote_bsdf"]
+__all__ = ["is_pairwise", "open_isolated", "remote_bsdf"]
 
 BLOCK = 4096
 """How many pairs are sent at a time to a function that takes one, so that each call ends in time."""
@@ -31,7 +31,7 @@ class _Remote:
     def __init__(
         self, sandbox: Sandbox, name: str, parameters: Mapping[str, Any], mode: Mode = "batch"
     ) -> None:
-        self._sandbox, self._name, self._parameters, self._mode = sandbox, name, parameters, mode
+        self._sandbox, self._name, self._parameters, self.mode = sandbox, name, parameters, mode
         self.__name__ = name
 
     def looped(self, mode: Mode) -> _Remote:
@@ -39,13 +39,13 @@ class _Remote:
         return _Remote(self._sandbox, self._name, self._parameters, mode)
 
     def __call__(self, first: FloatArray, second: FloatArray) -> Any:
-        if self._mode == "batch" or len(first) <= BLOCK:
+        if self.mode == "batch" or len(first) <= BLOCK:
             return self._ask(first, second)
         parts = [slice(start, start + BLOCK) for start in range(0, len(first), BLOCK)]
         return np.concatenate([self._ask(first[part], second[part]) for part in parts])
 
     def _ask(self, first: FloatArray, second: FloatArray) -> Any:
-        result = self._sandbox.call(self._name, first, second, mode=self._mode, parameters=self._parameters)
+        result = self._sandbox.call(self._name, first, second, mode=self.mode, parameters=self._parameters)
         if result.output:  # printed here too: the black box takes note of it
             sys.stdout.write(plain_text(result.output) + "\n")
         if result.raised:  # raised here too, so that the pair that did it is looked for
@@ -112,6 +112,12 @@ def remote_bsdf(sandbox: Sandbox, function: str, *, parameters: Mapping[str, Any
         pdf_function=None if pdf is None else pdf.looped(model.mode),
         mode="batch",
     )
+
+
+def is_pairwise(model: BSDF) -> bool:
+    """Return whether a BSDF in a sandbox is a function of one pair, and so slower than one of arrays."""
+    function = getattr(model, "function", None)
+    return isinstance(function, _Remote) and function.mode != "batch"
 
 
 def _first(problems: Sequence[Mapping[str, str]]) -> str:

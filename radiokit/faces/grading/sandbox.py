@@ -13,19 +13,16 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Literal
 
-import numpy as np
 import numpy.typing as npt
 
-from radiokit.faces.grading.limits import PROTECTIONS, Limits
-from radiokit.faces.grading.process import ChildProcess, LateError, StoppedError
-from radiokit.faces.grading.protocol import ARRAYS, Array, MalformedError, pack, plain_text
+from radiokit.faces.grading.limits import Limits
+from radiokit.faces.grading.process import ChildProcess, LateError, StoppedError, carried, started
+from radiokit.faces.grading.protocol import ARRAYS, Array, MalformedError, pack
 from radiokit.faces.grading.result import Result, judged
 from radiokit.facts.errors import ParameterError, RadiokitError
 
 __all__ = ["Sandbox"]
 
-STARTUP = 30.0
-"""How long Python and NumPy may take to start [s]."""
 LARGEST = 1 << 28
 """Files of more bytes are no submission."""
 BRANCHING = 5.0
@@ -184,7 +181,7 @@ class Sandbox:
             raise ParameterError("outputs", outputs, f"an integer from 1 to {ARRAYS}")
         if seed is not None and (type(seed) is not int or seed < 0):
             raise ParameterError("seed", seed, "an integer of at least 0")
-        given = [_carried(array) for array in arrays]
+        given = [carried(array) for array in arrays]
         if mode != "batch" and len({len(array) for array in given if array.ndim}) > 1:
             raise ParameterError("arrays", [array.shape for array in given], "arrays of equally many rows")
         return self._called(
@@ -297,30 +294,6 @@ class Sandbox:
 
     def _started(self) -> ChildProcess:
         """Return a child behind the highest walls that can be built."""
-        told = ""
-        while True:
-            child = ChildProcess(self.limits, self._files, namespaces=self._levels[0])
-            try:
-                ready = child.exchange(b"", STARTUP)[0].get("ready")
-                if isinstance(ready, list):
-                    self._protections = tuple(name for name in PROTECTIONS if name in ready)
-                    return child
-                told = "it is not ready"
-            except (StoppedError, MalformedError) as error:
-                told = plain_text(f"{error} {child.printed()}")
-            except BaseException:
-                child.close()
-                raise
-            child.close()
-            if len(self._levels) == 1:
-                raise RadiokitError(f"no sandbox can be started here: {told}")
-            self._levels.pop(0)
-
-
-def _carried(given: npt.ArrayLike) -> Array:
-    """Return an argument as an array of a type that messages carry."""
-    array = np.asarray(given)
-    kind = {"i": "<i8", "u": "<i8", "b": "|b1", "c": "<c16", "f": "<f8"}.get(array.dtype.kind)
-    if kind is None or (array.dtype.kind == "u" and array.size and array.max() > np.iinfo("i8").max):
-        raise ParameterError("arrays", array.dtype, "numbers of at most 64 bits")
-    return array.astype("<f4" if array.dtype == np.float32 else kind)
+        child = started(self.limits, self._files, self._levels)
+        self._protections = child.protections
+        return child

@@ -8,13 +8,19 @@ from __future__ import annotations
 import json
 import re
 
-__all__ = ["cells", "starts", "without_magics"]
+__all__ = ["cells", "starts", "without_magics", "without_tools"]
 
 _LINE_MAGIC = re.compile(r"\s*([%!?]|\?{0,2}[\w.]+\?{1,2}\s*$)")
 _ASSIGNED_MAGIC = re.compile(r"\s*[\w, ]+=\s*[%!]\s*[\w./]")
 _FRESH = re.compile(r"(async\s+def|def|class)\s+\w|@\w|import\s+\w|from\s+[\w.]+\s+import\b")
 _PYTHON_CELLS = ("time", "capture", "prun")
 _NOTED_MAGICS = ("run", "load", "loadpy", "paste", "macro")
+_TOOLS = re.compile(
+    r"(\w+\s*=\s*(rk|radiokit)\.grading\.practice\(.*\)|check(\.all)?\(.*\)"
+    r"|(rk|radiokit)\.grading\.kernel_(check|points)\(.*\)"
+    r"|grader\s*=\s*otter\.Notebook\(.*\)|grader\.(check|check_all|export)\(.*\))\s*(#.*)?"
+)
+_THEIR_IMPORTS = re.compile(r"import\s+(radiokit(\s+as\s+\w+)?|otter)\s*(#.*)?")
 
 
 def cells(text: str) -> list[str]:
@@ -93,3 +99,22 @@ def without_magics(source: str) -> tuple[str, list[tuple[int, str]]]:
             lines[number] = "" if dropping else line[: len(line) - len(line.lstrip())] + "pass"
             dropping = line.endswith("\\")
     return "\n".join(lines), noted
+
+
+def without_tools(source: str) -> str:
+    r"""Return a cell or script without the lines by which an assignment's copies ask for checks.
+
+    What they ask for is not there where a submission is graded, so they would only seem to fail.
+
+    >>> without_tools("import radiokit as rk\ncheck = rk.grading.practice('a')\nx = 1\ncheck(f)")
+    'pass\npass\nx = 1\npass'
+    >>> without_tools("import radiokit as rk\nx = 1")
+    'import radiokit as rk\nx = 1'
+    """
+    lines = source.split("\n")
+    own = [number for number, begins in enumerate(starts(lines)) if begins]
+    tools = [number for number in own if _TOOLS.fullmatch(lines[number])]
+    imports = [number for number in own if tools and _THEIR_IMPORTS.fullmatch(lines[number])]
+    for number in (*tools, *imports):
+        lines[number] = "pass"
+    return "\n".join(lines)

@@ -199,7 +199,7 @@ class Values:
         if out_of_range(answer, right, given, good):
             return "out-of-range", {"bad": rows(~good), "count": len(right)}
         if answer.dtype == np.float32:
-            near = close(answer, right, SINGLE * size)
+            near = close(answer, right, np.maximum(SINGLE * size, self.atol))
             if out_of_range(answer, right, given, near, widest=1e15):
                 return "float32-range", {"bad": rows(~near), "count": len(right)}
         if not finite.all():
@@ -213,10 +213,10 @@ class Values:
         single = short or answer.dtype == np.float32
         eps = float(np.finfo(np.float32 if single else np.float64).eps)
         terms = 0.0 if self.terms is None else np.abs(self.terms(**given))
-        near = np.maximum((SINGLE if single else DOUBLE) * size, SLACK * eps * terms)
+        near = np.maximum(np.maximum((SINGLE if single else DOUBLE) * size, SLACK * eps * terms), self.atol)
         if not np.all(np.abs(numbers - right) <= near):
             return "", {}
-        deviations = (numbers / right - 1)[size > 0]
+        deviations = (numbers / right - 1)[size > self.atol]
         values = {"error": f"{np.max(np.abs(deviations), initial=0.0):.1g}", "rtol": self.rtol}
         if len(deviations) >= FEWEST and np.ptp(deviations) < 0.01 * np.abs(deviations).min():
             return "constant-rounded", values

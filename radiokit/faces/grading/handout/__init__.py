@@ -1,0 +1,1 @@
+"""Handout: what students and instructors hold, made from an assignment and so never out of step with it."""

@@ -1,0 +1,223 @@
+"""Laws: judges a student's BRDF by the laws that every BRDF obeys, with the judges of ``rk.check``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal, get_args
+
+import numpy as np
+
+from radiokit.checks.judge import check
+from radiokit.contracts.bsdf import BSDF
+from radiokit.faces.grading.finding import Callee, Finding
+from radiokit.faces.grading.lawtexts import failed, found, law_name, remarks, share_of_light, tell
+from radiokit.faces.grading.likeness import Likeness, compared
+from radiokit.faces.grading.remote import is_pairwise
+from radiokit.faces.grading.words import say, sentence
+from radiokit.facts.errors import CallableError, ParameterError
+from radiokit.facts.report import Report
+from radiokit.facts.verdict import Outcome, Verdict
+
+__all__ = ["Laws"]
+
+Expected = Literal["holds", "violated"]
+
+LAWS = ("values", "reciprocity", "energy")
+
+EVALUATIONS = 1_000_000, 16_000_000
+"""What a function of arrays may cost at first, and again where energy is too near the limit to tell."""
+
+FEWER_EVALUATIONS = 100_000, 1_000_000
+"""The same for a function of one pair, which is looped over."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Laws:
+    """Judges whether a function f(wi, wo) obeys the laws, or breaks those that it should.
+
+    What it is judged by are evaluations, never a clock: the same function earns the same on any machine. A
+    function of arrays is searched as finely as ``rk.check`` does; one of single pairs more coarsely, every
+    1.2° or so in place of 0.15°. Where its albedo is then too near 1 to tell, it is asked once more, at
+    least ten times as often. If that does not tell either, the law counts as kept where what was measured is
+    within the limit: nobody loses points by a fault that was not seen.
+
+    Parameters
+    ----------
+    laws : sequence of str
+        Which of ``values`` (finite, not negative, repeatable), ``reciprocity``, ``energy``.
+    expected : mapping
+        ``"holds"``, which is the default, or ``"violated"``, by law.
+    weights : mapping
+        Each law's share of the points, above 0, by law; 1 by default.
+    parameters : callable or sequence of mappings
+        The keyword arguments with which the function is judged, each in turn; or from a generator to them. A
+        law must turn out as expected with all of them. The function's parameters must have these names.
+    reference : callable, optional
+        ``reference(**parameters)`` gives the BSDF that the function should be, of one wavelength. Where it is
+        another, the misconception is named; a constant, or what no known misconception leads to, earns
+        nothing.
+    variants : mapping
+        What wrong solutions give, by the name of the misconception: ``{name: f(wi, wo, **parameters)}``.
+    least : float
+        The share of the light that must be reflected in the direction where it is most, in [0, 1].
+    tolerance : float
+        How far beyond a limit a value may lie, in [0, 1).
+
+    Raises
+    ------
+    ParameterError
+        When an argument is out of its range.
+
+    >>> Laws(expected={"reciprocity": "broken"})
+    Traceback (most recent call last):
+        ...
+    radiokit.facts.errors.ParameterError: expected = {'reciprocity': 'broken'} is not allowed: it must be ...
+    """
+
+    laws: Sequence[str] = LAWS
+    expected: Mapping[str, Expected] = field(default_factory=dict)
+    weights: Mapping[str, float] = field(default_factory=dict)
+    parameters: Callable[[np.random.Generator], Sequence[Mapping[str, Any]]] | Sequence[Mapping[str, Any]] = (
+        {},
+    )
+    reference: Callable[..., BSDF] | None = None
+    variants: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
+    least: float = 0.0
+    tolerance: float = 1e-6
+
+    def __post_init__(self) -> None:
+        if not self.laws or not set(self.laws) <= set(LAWS):
+            raise ParameterError("laws", self.laws, f"some of {', '.join(LAWS)}")
+        outcomes = set(self.expected.values())
+        if not set(self.expected) <= set(self.laws) or not outcomes <= set(get_args(Expected)):
+            raise ParameterError("expected", self.expected, "'holds' or 'violated' by a law that is judged")
+        if not set(self.weights) <= set(self.laws) or not all(
+            0 < w < math.inf for w in self.weights.values()
+        ):
+            raise ParameterError("weights", self.weights, "finite numbers above 0 by a law that is judged")
+        if not callable(self.parameters) and not self.parameters:
+            raise ParameterError("parameters", self.parameters, "at least one mapping, such as {}")
+        for name, most in (("least", 1.0), ("tolerance", 0.999)):
+            if not 0 <= getattr(self, name) <= most:
+                raise ParameterError(name, getattr(self, name), f"in [0, {most:g}]")
+
+    def judge(
+        self,
+        callee: Callee,
+        rng: np.random.Generator,
+        *,
+        language: str,
+        hints: Mapping[str, Mapping[str, str]],
+        shown: bool,
+    ) -> Finding:
+        """Judge a function; ``shown`` changes nothing, for no right values are told."""
+        with np.errstate(all="ignore"):  # values may be infinite
+            return self._judged(callee, rng, language, hints)
+
+    def _judged(
+        self,
+        callee: Callee,
+        rng: np.random.Generator,
+        language: str,
+        hints: Mapping[str, Mapping[str, str]],
+    ) -> Finding:
+        chosen = list(self.parameters(rng) if callable(self.parameters) else self.parameters)
+        wrong: dict[str, tuple[str, str]] = {}  # by law: what was found, and the sentence
+        right: dict[str, str] = {}
+        notes: list[str] = []
+        refused, like = "", Likeness()
+        try:
+            models = [callee.bsdf(given) for given in chosen]
+            for model, given in zip(models, chosen, strict=True):
+                report = self._report(model)
+                notes += report.notes
+                finite = True
+                for verdict in report:
+                    name, text, good = self._weighed(verdict, report, model, language)
+                    finite = finite and name != "not-finite"
+                    if good and not finite:  # what was found elsewhere says nothing of there
+                        name, text, good = "unjudged", "", False
+                    if not good:
+                        text = _with(given if len(chosen) > 1 else {}, text, language)
+                        wrong.setdefault(verdict.check, (name, text))
+                    right.setdefault(verdict.check, text)
+                refused = refused or self._too_dark(report, language)
+            if self.reference is not None and not refused:
+                meant = [self.reference(**given) for given in chosen]
+                like = compared(models, meant, chosen, variants=self.variants, hints=hints, language=language)
+                refused = tell(language, "stranger") if like.stranger else ""
+        except CallableError as error:
+            return Finding(share=0.0, text=failed(error, language))
+        kept = sum(self._weight(law) for law in self.laws if law not in wrong)
+        texts = [text for name, text in wrong.values() if name != "unjudged"]
+        unjudged = [law_name(law, language) for law, (name, _) in wrong.items() if name == "unjudged"]
+        texts += [tell(language, "unjudged", laws=", ".join(unjudged))] if unjudged else []
+        texts += [refused] if refused else []
+        if not texts and not like.text:
+            texts = [f"{say(language, 'full')}: {'; '.join(right[law] for law in self.laws if law in right)}"]
+        texts += [like.text, *remarks(tuple(notes), language)]
+        names = [like.name, *(name for name, _ in wrong.values()), "not-the-model" if refused else ""]
+        return Finding(
+            share=0.0 if refused else kept / sum(self._weight(law) for law in self.laws),
+            text=" ".join(sentence(each) for each in texts if each),
+            diagnosis=next((name for name in names if name), ""),
+            confidence=like.confidence if like.name else float(bool(wrong or refused)),
+        )
+
+    def _weight(self, law: str) -> float:
+        return self.weights.get(law, 1.0)
+
+    def _report(self, model: BSDF) -> Report:
+        """Return the judges' report, with energy's verdict from a finer search where the first is unsure."""
+        first, finer = FEWER_EVALUATIONS if is_pairwise(model) else EVALUATIONS
+        laws = {*self.laws, "energy"} if self.least else set(self.laws)
+        report = check(
+            model,
+            laws=[law for law in LAWS if law in laws],
+            tolerance=self.tolerance,
+            evaluations=first,
+        )
+        unsure = [v for v in report if v.outcome is Outcome.INCONCLUSIVE and v.estimate is not None]
+        if not unsure or any(v.outcome is Outcome.VIOLATED and v.check == "values" for v in report):
+            return report
+        again = check(model, laws=["energy"], tolerance=self.tolerance, evaluations=finer)
+        kept = tuple(again["energy"] if v.check == "energy" else v for v in report)
+        return Report(subject=report.subject, verdicts=kept, notes=report.notes, parameters=report.parameters)
+
+    def _weighed(self, verdict: Verdict, report: Report, model: BSDF, language: str) -> tuple[str, str, bool]:
+        """Return what a verdict found, the sentence on it, and whether it is as it should be."""
+        law = verdict.check
+        mutual = any(v.check == "reciprocity" and v.outcome is Outcome.HOLDS for v in report)
+        name, text = found(verdict, model, language, mutual=mutual)
+        if law not in self.laws:
+            return name, text, True
+        if self.expected.get(law, "holds") == "violated":
+            if verdict.outcome is Outcome.VIOLATED:
+                return name, tell(language, "as-it-should", text=text), True
+            return f"{law}-holds", f"{text}, {tell(language, 'should-break')}", False
+        if verdict.outcome is Outcome.INCONCLUSIVE and name == "unclear":
+            assert verdict.estimate is not None
+            return name, text, bool(np.max(verdict.estimate.value) <= 1 + self.tolerance)
+        return name, text, verdict.outcome is Outcome.HOLDS
+
+    def _too_dark(self, report: Report, language: str) -> str:
+        """Return the sentence on a surface that is darker than is allowed, if it is."""
+        energy = next((v for v in report if v.check == "energy" and v.estimate is not None), None)
+        if not self.least or energy is None or energy.estimate is None:
+            return ""
+        most = max(float(value) for value in energy.details["supremum"].values())
+        if most >= self.least * (1 - self.tolerance):
+            return ""
+        return tell(language, "black", share=share_of_light(most), least=share_of_light(self.least))
+
+
+def _with(given: Mapping[str, Any], text: str, language: str) -> str:
+    if not given:
+        return text
+    named = ", ".join(
+        f"{name} = {value:g}" if isinstance(value, int | float) else f"{name} = {value}"
+        for name, value in given.items()
+    )
+    return tell(language, "given", parameters=named, text=text)
