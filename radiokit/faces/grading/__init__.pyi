@@ -22,10 +22,10 @@ from .grader import grade as grade
 from .grades import Grade as Grade
 from .grades import PartGrade as PartGrade
 from .grades import QuestionGrade as QuestionGrade
-from .laws import Laws as Laws
 from .handout.kernel import kernel_check as kernel_check
 from .handout.kernel import kernel_points as kernel_points
 from .handout.write import write_handout as write_handout
+from .laws import Laws as Laws
 from .limits import Limits as Limits
 from .practice import Check as Check
 from .practice import Checked as Checked

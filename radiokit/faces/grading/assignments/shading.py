@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from radiokit.faces.grading.assignment import Assignment
-from radiokit.faces.grading.assignments._shading_estimates import FURNACE, GLOSSY, WINDOW
-from radiokit.faces.grading.assignments._shading_lights import DIRECT_LIGHT, MIS_WEIGHT, SPHERE_IRRADIANCE
-from radiokit.faces.grading.assignments._shading_samplers import COSINE_SAMPLE, LOBE_SAMPLE
+from radiokit.faces.grading.assignments._shading.estimates import FURNACE, GLOSSY, WINDOW
+from radiokit.faces.grading.assignments._shading.lights import DIRECT_LIGHT, MIS_WEIGHT, SPHERE_IRRADIANCE
+from radiokit.faces.grading.assignments._shading.samplers import COSINE_SAMPLE, LOBE_SAMPLE
 
 __all__ = ["ASSIGNMENT"]
 
