@@ -5,6 +5,7 @@ from .assignment import load_assignment as load_assignment
 from .assignment import student_rng as student_rng
 from .classroom.run import ClassGrades as ClassGrades
 from .classroom.run import grade_class as grade_class
+from .estimator import Estimator as Estimator
 from .finding import Callee as Callee
 from .finding import Finding as Finding
 from .finding import Judge as Judge
@@ -34,6 +35,7 @@ from .question import Question as Question
 from .record import grade_schema as grade_schema
 from .remote import remote_bsdf as remote_bsdf
 from .result import Result as Result
+from .sampler import Sampler as Sampler
 from .sandbox import Sandbox as Sandbox
 from .unfinished import no_submission as no_submission
 from .values import Values as Values

@@ -1,0 +1,1 @@
+"""The questions of assignment 3, by how they are judged: numbers, samplers, estimates."""

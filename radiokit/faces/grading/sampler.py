@@ -1,0 +1,317 @@
+"""Sampler: judges a function that samples directions, with the density that it claims."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Any, Literal, get_args
+
+import numpy as np
+
+from radiokit.faces.diagnosis.catalogue import CATALOGUE
+from radiokit.faces.diagnosis.diagnose import diagnose
+from radiokit.faces.grading.directions import ASKED, UNIFORM, integral, probes, uniform_variance
+from radiokit.faces.grading.draws import Draws, Fit, cells_of_density, sampled, u_slip
+from radiokit.faces.grading.finding import Callee, Finding
+from radiokit.faces.grading.protocol import Array
+from radiokit.faces.grading.runs import UnusableError
+from radiokit.faces.grading.runtests import ROUNDS, each_level
+from radiokit.faces.grading.samplewords import PLAIN, line, slip, tell
+from radiokit.facts.errors import ParameterError
+from radiokit.measure.statistics import bernstein_test
+
+__all__ = ["Sampler", "SamplerAspect"]
+
+SamplerAspect = Literal["distribution", "density", "efficiency"]
+
+FITS = 1e-3
+"""The p-value from which samples are said to follow another density than the one that is asked for."""
+
+SURE = 0.5
+"""From which confidence on a misconception is named."""
+
+
+def _nothing(rng: np.random.Generator) -> Mapping[str, Any]:
+    return {}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sampler:
+    """Judges ``sample(u, *inputs) -> directions`` (N, 3) and, if it has a name, ``pdf(directions, *inputs)``.
+
+    ``u`` (N, 2) holds random numbers in [0, 1); z is the normal. Both functions are handed arrays; if one
+    cannot bear that, rows. What is judged is one aspect:
+
+    - ``"distribution"``: unit vectors above the horizon, each from its own row of u, continuous in both of
+      its numbers, that follow the density (chi-square);
+    - ``"density"``: the claimed density is the one asked for, above and below the horizon;
+    - ``"efficiency"``: the mean of f/p is the integral of f over the hemisphere, and its variance is at most
+      1/``factor`` of what uniform directions have; time counts only where it is out of all proportion.
+
+    A right sampler is rejected at most once in 1.6e7 gradings: a test counts when it fails three times, each
+    time with other random numbers.
+
+    Parameters
+    ----------
+    density : callable
+        ``density(directions, **inputs)`` gives the density that is asked for [sr⁻¹], (N,); 0 below the
+        horizon, and 1 when it is integrated.
+    inputs : callable, optional
+        From a generator to further inputs by name, numbers, in the order of the parameters.
+    aspect : {"distribution", "density", "efficiency"}
+    pdf : str
+        The name of the student's other function; needed but for ``"distribution"``.
+    integrand : callable, optional
+        f, as ``density`` is called, at least 0; needed for ``"efficiency"``.
+    factor : float
+        Above 1.
+    samples : int
+        For each of ``cases`` inputs, at least 4096.
+    cases : int
+        At least 1.
+    rtol : float
+        The relative error that is allowed in a density, in (0, 0.1); float32 has 1e-5.
+    variants : mapping
+        The densities that wrong samplers have, or give, by the misconception's name, called as ``density``.
+    credit : mapping
+        The share that a slip still earns, by its name.
+    slowest : float
+        Wall time of a sample [s], of the best call, above which no variance is efficient.
+
+    Raises
+    ------
+    ParameterError
+        When an argument is out of its range; while judging, when the integral of ``density`` is not 1.
+
+    Examples
+    --------
+    >>> def cosine(directions):
+    ...     return np.maximum(directions[:, 2], 0) / np.pi
+    >>> Sampler(density=cosine, pdf="cosine_pdf", aspect="density").samples
+    32768
+    """
+
+    density: Callable[..., Any]
+    inputs: Callable[[np.random.Generator], Mapping[str, Any]] = _nothing
+    aspect: SamplerAspect = "distribution"
+    pdf: str = ""
+    integrand: Callable[..., Any] | None = None
+    factor: float = 2.0
+    samples: int = 1 << 15
+    cases: int = 2
+    rtol: float = 1e-4
+    variants: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
+    credit: Mapping[str, float] = field(default_factory=lambda: {"u-torn": 0.5, "horizon-not-clamped": 0.5})
+    slowest: float = 1e-3
+
+    def __post_init__(self) -> None:
+        if self.aspect not in get_args(SamplerAspect):
+            raise ParameterError("aspect", self.aspect, ", ".join(get_args(SamplerAspect)))
+        if self.aspect != "distribution" and not self.pdf:
+            raise ParameterError("pdf", self.pdf, f"the name of a function, to judge {self.aspect}")
+        if self.aspect == "efficiency" and self.integrand is None:
+            raise ParameterError("integrand", None, "a function, to judge efficiency")
+        for name, least in (("samples", 4096), ("cases", 1)):
+            value = getattr(self, name)
+            if type(value) is not int or value < least:
+                raise ParameterError(name, value, f"an integer of at least {least}")
+        for name, low, high in (("factor", 1, math.inf), ("rtol", 0, 0.1), ("slowest", 0, math.inf)):
+            if not low < getattr(self, name) < high:
+                raise ParameterError(name, getattr(self, name), f"above {low} and below {high}")
+        if not all(0 <= share <= 1 for share in self.credit.values()):
+            raise ParameterError("credit", self.credit, "shares in [0, 1]")
+
+    def judge(
+        self,
+        callee: Callee,
+        rng: np.random.Generator,
+        *,
+        language: str,
+        hints: Mapping[str, Mapping[str, str]],
+        shown: bool,
+    ) -> Finding:
+        """Judge a sampler: right, or what is wrong with it and why."""
+        ways = {
+            "distribution": self._distribution,
+            "density": self._density,
+            "efficiency": self._efficiency,
+        }
+        found = Finding(share=1.0, text="")
+        for _ in range(self.cases):
+            given = {name: np.asarray(value) for name, value in self.inputs(rng).items()}
+            draws = Draws(callee, self.pdf, given, language)
+            try:
+                found = ways[self.aspect](draws, rng, hints)
+            except UnusableError as error:
+                return error.finding
+            if found.share < 1:
+                return found
+        return found
+
+    def _distribution(
+        self, draws: Draws, rng: np.random.Generator, hints: Mapping[str, Mapping[str, str]]
+    ) -> Finding:
+        language = draws.language
+        cells = cells_of_density(partial(self._right, given=draws.inputs))
+        level = each_level(len(Fit.TESTS) * self.cases)
+        name, failing = "", set(Fit.TESTS)
+        for turn in range(ROUNDS):
+            u = rng.random((self.samples, 2))
+            fit = sampled(draws, cells, u, hints)
+            name = name if turn else u_slip(draws, u, fit.directions, rng)
+            if name in ("rows-mixed", "u-unused"):
+                return self._found(slip(language, name, hints), name=name)
+            failing -= {test for test, p in fit.p_values().items() if p >= level}
+            if not failing:
+                if name:
+                    return self._found(slip(language, name, hints), name=name)
+                return Finding(share=1.0, text=tell(language, "sampled", samples=self.samples))
+        return self._mismatch(draws, fit, hints)
+
+    def _mismatch(self, draws: Draws, fit: Fit, hints: Mapping[str, Mapping[str, str]]) -> Finding:
+        """Say what samples follow that do not follow the density."""
+        language = draws.language
+        told = [tell(language, "no-match")]
+        own = self._own(draws, fit)
+        if own:
+            told.append(tell(language, "consistent", function=self.pdf))
+        for name, variant in {**self.variants, "uniform-instead": _uniform}.items():
+            density = partial(_called, variant, given=draws.inputs)
+            if min(fit.p_values(density).values()) > FITS:
+                return self._found(slip(language, name, hints), *told, name=name)
+        if fit.never() > 0.1:
+            return self._found(slip(language, "quarter-only", hints), *told, name="quarter-only")
+        right = integral(lambda w: w[:, 2] * self._right(w, draws.inputs), fit.cells.width)
+        mean = float(np.mean(fit.directions[:, 2]))
+        told.append(tell(language, "cosine", value=f"{mean:.3f}", right=f"{right:.3f}"))
+        return self._found(*told)
+
+    def _own(self, draws: Draws, fit: Fit) -> bool:
+        """Return whether the samples follow the density that is claimed."""
+        if not self.pdf:
+            return False
+        try:
+            return min(fit.p_values(draws.density).values()) > FITS
+        except UnusableError:
+            return False
+
+    def _density(
+        self, draws: Draws, rng: np.random.Generator, hints: Mapping[str, Mapping[str, str]]
+    ) -> Finding:
+        language = draws.language
+        asked = partial(self._right, given=draws.inputs)
+        cells = cells_of_density(asked)
+        directions = probes(cells, rng)
+        right = asked(directions)
+        claimed = draws.claimed(directions)
+        close = np.abs(claimed - right) <= self.rtol * right + 1e-9 * right.max()
+        if close.all():
+            return Finding(share=1.0, text=tell(language, "density"))
+        told = tell(
+            language,
+            "density-wrong",
+            bad=int(np.count_nonzero(~close)),
+            count=ASKED,
+            integral=f"{integral(draws.claimed, cells.width):.4g}",
+        )
+        name, text, confidence = self._density_slip(draws, directions, claimed, right, hints)
+        return self._found(text, told, name=name, confidence=confidence)
+
+    def _density_slip(
+        self,
+        draws: Draws,
+        directions: Array,
+        claimed: Array,
+        right: Array,
+        hints: Mapping[str, Mapping[str, str]],
+    ) -> tuple[str, str, float]:
+        """Return the misconception behind a wrong density, what is said of it, and how sure that is.
+
+        Those that the question knows come first, then a wrong factor, then the whole catalogue.
+        """
+        language = draws.language
+        inputs = {name: value for name, value in draws.inputs.items() if value.ndim == 0}
+        known = {"uniform-instead": _uniform, **self.variants}
+        others = {name: _called(each, directions, given=draws.inputs) for name, each in known.items()}
+        for variants, catalogue in ((others, ()), (None, CATALOGUE)):
+            found = diagnose(
+                claimed,
+                right,
+                inputs={**inputs, "cosine": directions[:, 2]},
+                variants=variants,
+                language=language,
+                catalogue=catalogue,
+                rtol=self.rtol,
+            )
+            first = found.first
+            if first is not None and not found.ambiguous and first.confidence >= SURE:
+                text = slip(language, first.name, hints)
+                if first.detail and first.name not in hints and first.name not in PLAIN:
+                    text = f"{first.message.rstrip('.')} ({first.detail})"
+                return first.name, text, first.confidence
+            ratio = claimed[right > 0] / right[right > 0]
+            steady = np.ptp(ratio) <= self.rtol * abs(ratio).max()
+            if steady and abs(ratio[0] - 1) > self.rtol:
+                return "pdf-not-normalised", slip(language, "pdf-not-normalised", hints), 1.0
+        return "", "", 0.0
+
+    def _efficiency(
+        self, draws: Draws, rng: np.random.Generator, hints: Mapping[str, Mapping[str, str]]
+    ) -> Finding:
+        assert self.integrand is not None
+        language = draws.language
+        integrand = partial(_called, self.integrand, given=draws.inputs)
+        exact, uniform = uniform_variance(integrand)
+        level = each_level(2 * self.cases)
+        failing = {"weights", "variance"}
+        for _ in range(ROUNDS):
+            directions = draws.sample(rng.random((self.samples, 2)))
+            claimed = draws.density(directions)
+            value = np.where(directions[:, 2] > 0, integrand(directions), 0.0)
+            if (claimed[value > 0] == 0).any():
+                raise UnusableError(
+                    Finding(share=0.0, text=line(tell(language, "density-zero", function=self.pdf)))
+                )
+            weights = np.divide(value, claimed, out=np.zeros_like(value), where=claimed > 0)
+            mean, variance = float(weights.mean()), float(weights.var())
+            error = math.sqrt(float(np.mean(((weights - mean) ** 2 - variance) ** 2)) / self.samples)
+            passed = set()
+            if bernstein_test(weights, exact, 1e-6 * exact) >= level:
+                passed.add("weights")
+            if variance - 3 * error <= uniform / self.factor:
+                passed.add("variance")
+            failing -= passed
+            if not failing:
+                break
+        measured = {"seconds_per_sample": draws.quickest}
+        if variance > 0 and draws.quickest > 0:
+            measured["efficiency"] = 1 / (variance * draws.quickest)
+        if "weights" in failing:
+            told = {"value": f"{mean:.4g}", "right": f"{exact:.4g}"}
+            return Finding(share=0.0, text=line(tell(language, "weights", **told)), measured=measured)
+        ratio = {"ratio": f"{variance / uniform:.1g}"}
+        if "variance" in failing:
+            text = tell(language, "inefficient", most=f"{1 / self.factor:.2g}", **ratio)
+            found = self._found(slip(language, "inefficient", hints), text, name="inefficient")
+            return replace(found, measured=measured)
+        if draws.quickest > self.slowest:
+            return Finding(share=0.0, text=line(tell(language, "slow")), diagnosis="slow", measured=measured)
+        return Finding(share=1.0, text=tell(language, "efficient", **ratio), measured=measured)
+
+    def _right(self, directions: Array, given: Mapping[str, Array]) -> Array:
+        return _called(self.density, directions, given=given)
+
+    def _found(self, *text: str, name: str = "", confidence: float = 1.0) -> Finding:
+        sure = round(confidence, 2) if name else 0.0
+        return Finding(share=self.credit.get(name, 0.0), text=line(*text), diagnosis=name, confidence=sure)
+
+
+def _called(function: Callable[..., Any], directions: Array, given: Mapping[str, Array]) -> Array:
+    found: Array = np.asarray(function(directions, **given), dtype=float)
+    return found
+
+
+def _uniform(directions: Array, **given: Any) -> Array:
+    return np.full(len(directions), UNIFORM)
