@@ -17,7 +17,7 @@ from radiokit.faces.grading.handout.cells import notebook, script
 from radiokit.faces.grading.handout.copies import instructor_cells, student_cells
 from radiokit.faces.grading.handout.nbgrader import nbgrader_cells
 from radiokit.faces.grading.handout.otter import otter_cells
-from radiokit.faces.grading.handout.solution import read_solution
+from radiokit.faces.grading.handout.worked import read_solution
 from radiokit.faces.grading.words import SENTENCES
 
 HERE = Path(__file__).parent

@@ -16,7 +16,7 @@ import radiokit as rk
 from radiokit.faces.grading.assignment import load_assignment
 from radiokit.faces.grading.handout import kernel
 from radiokit.faces.grading.handout.nbgrader import CONFIG
-from radiokit.faces.grading.handout.solution import read_solution
+from radiokit.faces.grading.handout.worked import read_solution
 
 HERE = Path(__file__).parent
 HOMEWORK, SOLUTION = HERE / "homework.py", HERE / "homework_solution.py"

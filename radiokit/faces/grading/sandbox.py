@@ -65,6 +65,7 @@ class Sandbox:
         When a file is not there or too large, or no child can be started.
 
     >>> import tempfile
+    >>> import numpy as np
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = Path(folder, "theirs.py")
     ...     _ = file.write_text("def double(x): return 2 * x")

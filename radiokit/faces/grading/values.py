@@ -237,10 +237,17 @@ class Values:
             return self.reference(**{name: inputs.get(name, given[name]) for name in given})
 
         found: Diagnosis | None = None
+        rtol = min(max(self.rtol, 2e-5 if answer.dtype == np.float32 else 1e-6), 0.1)
         lit = right != 0
         for variants in ([others] if others else []) + [reference]:
             found = diagnose(
-                answer, right, inputs=columns, variants=variants, language=language, catalogue=usual
+                answer,
+                right,
+                inputs=columns,
+                variants=variants,
+                language=language,
+                rtol=rtol,
+                catalogue=usual,
             )
             if found.right or found.suspicions:
                 return found
@@ -254,6 +261,7 @@ class Values:
             inputs=some,
             variants={name: values[lit] for name, values in others.items()},
             language=language,
+            rtol=rtol,
             catalogue=(*CATALOGUE, *argument_mistakes(self.reference, lit_given, right[lit])),
         )
         return partly if partly.suspicions else found

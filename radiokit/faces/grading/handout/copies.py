@@ -9,8 +9,8 @@ from collections.abc import Sequence
 
 from radiokit.faces.grading.assignment import Assignment
 from radiokit.faces.grading.handout.cells import Cell, code, markdown
-from radiokit.faces.grading.handout.solution import INDENT, Solution
 from radiokit.faces.grading.handout.texts import tell
+from radiokit.faces.grading.handout.worked import INDENT, Solution
 from radiokit.faces.grading.question import Question
 from radiokit.faces.grading.words import checked_language
 

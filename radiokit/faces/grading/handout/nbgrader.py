@@ -12,8 +12,8 @@ from radiokit.faces.grading.assignment import Assignment
 from radiokit.faces.grading.handout.cells import Cell, code, markdown
 from radiokit.faces.grading.handout.copies import BLANK, header, intro, question_text
 from radiokit.faces.grading.handout.kernel import GRADED, LATER
-from radiokit.faces.grading.handout.solution import INDENT, Solution
 from radiokit.faces.grading.handout.texts import tell
+from radiokit.faces.grading.handout.worked import INDENT, Solution
 from radiokit.faces.grading.question import Question
 
 __all__ = ["CONFIG", "STEP", "nbgrader_cells"]

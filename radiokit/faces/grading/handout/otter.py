@@ -12,8 +12,8 @@ from typing import Any
 from radiokit.faces.grading.assignment import Assignment
 from radiokit.faces.grading.handout.cells import Cell, code, markdown, raw
 from radiokit.faces.grading.handout.copies import BLANK, header, intro, question_text
-from radiokit.faces.grading.handout.solution import INDENT, Solution
 from radiokit.faces.grading.handout.texts import tell
+from radiokit.faces.grading.handout.worked import INDENT, Solution
 from radiokit.faces.grading.question import Part, Question
 
 __all__ = ["FOLDER", "PLUGIN", "otter_cells"]

@@ -10,7 +10,7 @@ from radiokit.faces.grading.handout.cells import Cell, notebook, script
 from radiokit.faces.grading.handout.copies import instructor_cells, student_cells
 from radiokit.faces.grading.handout.nbgrader import CONFIG, STEP, nbgrader_cells
 from radiokit.faces.grading.handout.otter import FOLDER, otter_cells
-from radiokit.faces.grading.handout.solution import Solution, read_solution
+from radiokit.faces.grading.handout.worked import Solution, read_solution
 from radiokit.faces.grading.words import checked_language
 from radiokit.facts.errors import TargetError
 

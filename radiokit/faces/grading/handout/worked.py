@@ -1,4 +1,4 @@
-"""Solution: an instructor's file of right functions, taken apart so that each goes where its blank was."""
+"""Worked: an instructor's file of solutions, taken apart so that each function goes where its blank was."""
 
 from __future__ import annotations
 
