@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+import radiokit as rk
+
 ROOT = Path(__file__).parent.parent
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
 
@@ -28,6 +30,19 @@ def test_every_command_of_the_tour_exists():
     known = {command.name or command.callback.__name__ for command in app.registered_commands}
     used = {line.split()[1] for line in block("sh", 2).splitlines() if line.startswith("radiokit ")}
     assert used == known
+
+
+def test_the_example_of_an_assignment_grades(tmp_path):
+    (tmp_path / "light.py").write_text(block("python", 1), encoding="utf-8")
+    homework = """
+import numpy as np
+def irradiance(intensity, distance, theta): return intensity / distance**2
+def matt(wi, wo): return np.full(len(wi), 0.5 / np.pi)
+"""
+    (tmp_path / "homework.py").write_text(homework, encoding="utf-8")
+    found = rk.grading.grade(tmp_path / "light.py", tmp_path / "homework.py")
+    assert found["irradiance"].diagnosis == "cosine-forgotten"
+    assert (found.score, found.points) == (3, 5)
 
 
 @pytest.mark.parametrize("target", re.findall(r"\]\(([^)#:]+)\)", TEXT))
