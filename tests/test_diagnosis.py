@@ -90,6 +90,7 @@ FACTORS: dict[str, Callable[[dict[str, Any]], Any]] = {
     "distance-forgotten": lambda i: i["distance"] ** 2,
     "distance-cubed": lambda i: 1 / i["distance"],
     "distance-squared-twice": lambda i: i["distance"] ** -2.0,
+    "distance-doubled": lambda i: i["distance"] / 2,
     "intensity-for-irradiance": lambda i: i["distance"] ** 2 / np.cos(i["theta"]),
     "intensity-for-radiance": lambda i: i["area"] * np.cos(i["theta"]),
     "flux-for-irradiance": lambda i: i["area"],

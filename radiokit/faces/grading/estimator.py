@@ -12,6 +12,7 @@ import numpy as np
 from radiokit.faces.diagnosis.catalogue import CATALOGUE
 from radiokit.faces.diagnosis.diagnose import diagnose
 from radiokit.faces.diagnosis.result import Suspicion
+from radiokit.faces.grading.evidence import clause, guesses
 from radiokit.faces.grading.finding import Callee, Finding
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.runs import FLOOR, Runs, UnusableError, gather
@@ -25,6 +26,7 @@ from radiokit.faces.grading.runtests import (
     honest,
     rate,
     rate_slip,
+    swapped,
 )
 from radiokit.faces.grading.samplewords import PLAIN, line, slip, tell
 from radiokit.faces.grading.words import say
@@ -235,8 +237,12 @@ class Estimator:
             )
         if runs.exact and not self.exact:
             return found(slip(language, "not-sampled", hints), name="not-sampled")
+        if not runs.values.any() and runs.right.any():
+            return found(say(language, "zero"), name="constant-answer")
         frozen = runs.frozen and not runs.exact
         biased = any(name.startswith("bias") for name in failing)
+        if biased and swapped(runs):
+            return found(slip(language, "error-first", hints), name="error-first")
         why, about, sure = self._value(runs, language, hints, shown) if biased or frozen else ([], "", 0.0)
         if frozen and not about:
             return found(slip(language, "seed-reused", hints), name="seed-reused")
@@ -276,9 +282,9 @@ class Estimator:
         for suspicions, ambiguous in self._suspected(runs, language):
             first = suspicions[0]
             if first.confidence < SURE or ambiguous:
-                names = " / ".join(slip(language, each.name, hints).rstrip(".") for each in suspicions[:2])
-                return [say(language, "one-of", names=names), seen], first.name, first.confidence
-            why = slip(language, first.name, hints)
+                names = [_slips(language, each.name, hints).rstrip(".") for each in suspicions[:2]]
+                return [guesses(names, language), seen], first.name, first.confidence
+            why = _slips(language, first.name, hints)
             if first.detail and first.name not in hints and first.name not in PLAIN:
                 why = f"{first.message.rstrip('.')} ({first.detail})"
             return [why, seen], first.name, first.confidence
@@ -316,6 +322,12 @@ class Estimator:
                 )
                 if found.suspicions:
                     yield found.suspicions, bool(found.ambiguous)
+
+
+def _slips(language: str, name: str, hints: Mapping[str, Mapping[str, str]]) -> str:
+    """Return what is said of a slip, or of two at once."""
+    names = [slip(language, each, hints) for each in name.split(" + ")]
+    return names[0] if len(names) == 1 else say(language, "both", names=" + ".join(map(clause, names)))
 
 
 def _numbers(runs: Runs, context: Callable[..., Mapping[str, Any]] | None) -> dict[str, Array]:

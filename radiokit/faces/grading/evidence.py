@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from radiokit.faces.grading.protocol import Array, plain_text
 from radiokit.faces.grading.words import say, sentence
 
-__all__ = ["LONGEST", "clause", "hint_for", "joined", "rows", "wrong_at"]
+__all__ = ["LONGEST", "at", "clause", "guesses", "hint_for", "joined", "rows", "wrong_at"]
 
 LONGEST = 300
 """How many characters a text for a student should have at most."""
@@ -81,18 +81,32 @@ def wrong_at(
     """Return how often an answer is wrong, with the worst input and what comes out there, and without."""
     count = say(language, "wrong", bad=rows(~good), count=len(right))
     row = _worst(answer, right, good)
-    named = [f"{name} = {_brief(_at(value, row))}" for name, value in given.items() if _is_short(value)]
     value, truth = _told_apart(answer[row], right[row])
-    full = count
+    return at(count, row, given, language, value=value, right=truth if shown else ""), count
+
+
+def at(text: str, row: int, given: Mapping[str, Array], language: str, *, value: str, right: str = "") -> str:
+    """Return a text with the inputs of a row behind it, what it gives, and what is right if that is told."""
+    named = [f"{name} = {_brief(_at(each, row))}" for name, each in given.items() if _is_short(each)]
+    full = text
     for most in range(len(named), -1, -1):  # fewer inputs where they would be too long
         inputs = ", ".join(named[:most]) + (", …" if most < len(given) else "")
         if not most:
             inputs = say(language, "number", row=row + 1)
-        key = "witness" if shown else "witness-hidden"
-        full = f"{count}: {say(language, key, inputs=inputs, value=value, right=truth)}"
+        key = "witness" if right else "witness-hidden"
+        full = f"{text}: {say(language, key, inputs=inputs, value=value, right=right)}"
         if len(full) <= LONGEST // 2:
             break
-    return full, count
+    return full
+
+
+def guesses(names: Sequence[str], language: str) -> str:
+    """Return that something may be one of these, or perhaps the only one.
+
+    >>> guesses(["You forgot π"], "en"), guesses(["this", "that"], "en")
+    ('perhaps: You forgot π', 'one of these: this / that')
+    """
+    return say(language, "one-of" if len(names) > 1 else "perhaps", names=" / ".join(names))
 
 
 def _worst(answer: Array, right: Array, good: Array) -> int:

@@ -182,7 +182,8 @@ class Sampler:
             if min(fit.p_values(density).values()) > FITS:
                 return self._found(slip(language, name, hints), *told, name=name)
         if fit.never() > 0.1:
-            return self._found(slip(language, "quarter-only", hints), *told, name="quarter-only")
+            name = "quarter-only" if fit.lacks_azimuths() else "part-only"
+            return self._found(slip(language, name, hints), *told, name=name)
         right = integral(lambda w: w[:, 2] * self._right(w, draws.inputs), fit.cells.width)
         mean = float(np.mean(fit.directions[:, 2]))
         told.append(tell(language, "cosine", value=f"{mean:.3f}", right=f"{right:.3f}"))

@@ -14,7 +14,7 @@ from radiokit.faces.diagnosis.diagnose import diagnose
 from radiokit.faces.diagnosis.result import Diagnosis
 from radiokit.faces.grading.arguments import argument_mistakes
 from radiokit.faces.grading.asking import asked, close, fitted, is_extreme, is_right, out_of_range
-from radiokit.faces.grading.evidence import clause, hint_for, joined, rows, wrong_at
+from radiokit.faces.grading.evidence import at, clause, guesses, hint_for, joined, rows, wrong_at
 from radiokit.faces.grading.finding import Callee, Finding
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.result import Result
@@ -29,7 +29,12 @@ SLACK = 64
 """How many roundings of its terms a careless formula may be off."""
 SINGLE, DOUBLE = 2e-5, 1e-6
 """The relative deviation of a right formula with its digits lost, of numbers in float32 and others."""
-NAMES = {"float32": "single-precision", "float32-range": "single-precision", "constant": "constant-answer"}
+NAMES = {
+    "float32": "single-precision",
+    "float32-range": "single-precision",
+    "constant": "constant-answer",
+    "zero": "constant-answer",
+}
 """Diagnoses by sentences, where they differ."""
 FEWEST = 5
 """How many answers it takes to tell something of them all."""
@@ -164,7 +169,12 @@ class Values:
         key, values = self._known(answer, right, given, good)
         if key:
             name = NAMES.get(key, key)
-            text = joined(say(language, key, **values), hints.get(name, {}).get(language, ""))
+            said = say(language, key, **values)
+            hint = "" if key == "zero" else hints.get(name, {}).get(language, "")
+            if key == "not-finite":
+                row = int(np.argmin(np.isfinite(answer).reshape(len(answer), -1).all(axis=1)))
+                said = at(said, row, given, language, value=values["value"]) if answer.ndim == 1 else said
+            text = joined(said, hint)
             return Finding(share=share, text=text, diagnosis=name, confidence=1.0)
         full, count = wrong_at(answer, right, given, good, language, shown=shown)
         found = self._diagnosed(answer.astype(float), right, given, language) if right.ndim == 1 else None
@@ -176,7 +186,7 @@ class Values:
             return Finding(share=share, text=joined(full), diagnosis=first.name)
         if first.confidence < SURE or found.ambiguous:
             likely = [clause(hint_for(each, hints, language, shown=shown)) for each in found.suspicions[:2]]
-            text = say(language, "one-of", names=" / ".join(likely))
+            text = guesses(likely, language)
         elif " + " in first.name and first.name not in hints:
             catalogue = {entry.name: entry.hint(language) for entry in CATALOGUE}
             both = [hints.get(each, {}).get(language, catalogue[each]) for each in first.name.split(" + ")]
@@ -207,6 +217,8 @@ class Values:
             value = "NaN" if math.isnan(worst) else "inf" if worst > 0 else "-inf"
             return "not-finite", {"value": value, "bad": rows(~finite), "count": len(finite)}
         numbers = answer.astype(float)
+        if len(right) > 1 and not numbers.any() and right.any():
+            return "zero", {}
         if len(right) > 1 and not np.ptp(numbers):
             return ("constant", {"value": f"{numbers.flat[0]:.6g}"}) if np.ptp(right) else ("", {})
         short = len(right) >= FEWEST and bool(np.all(numbers == numbers.astype(np.float32)))
@@ -280,6 +292,8 @@ def _raised(
         hint = hints.get("out-of-range", {}).get(language, "")
         text = f"{text}. {sentence(hint)}" if hint else text
         return Finding(share=0.0, text=text, diagnosis="out-of-range", confidence=1.0)
+    if "bitwise_xor" in result.error or " for ^" in result.error:
+        return Finding(share=0.0, text=joined(say(language, "caret"), text))
     return Finding(share=0.0, text=text)
 
 

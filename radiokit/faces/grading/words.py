@@ -54,6 +54,12 @@ SENTENCES: Mapping[str, Words] = {
         "en": "the answer is {value} for all inputs: it does not depend on them",
         "ru": "ответ равен {value} для всех входных данных: он от них не зависит",
     },
+    "zero": {
+        "en": "the answer is 0 for all inputs: look for // in place of /, a rounding, or a condition that is "
+        "never true",
+        "ru": "ответ равен 0 для всех входных данных: нет ли // вместо /, округления или условия, которое "
+        "никогда не выполняется?",
+    },
     "not-finite": {
         "en": "gives {value} at {bad} of {count} {noun}",
         "ru": "даёт {value} для {bad} из {count} {noun}",
@@ -88,8 +94,16 @@ SENTENCES: Mapping[str, Words] = {
         "ru": "при {inputs} получено {value}",
     },
     "number": {"en": "input no. {row}", "ru": "наборе данных № {row}"},
-    "both": {"en": "two mistakes at once: {names}", "ru": "две ошибки сразу: {names}"},
+    "both": {
+        "en": "your numbers fit two mistakes at once: {names}",
+        "ru": "такие числа дают две ошибки сразу: {names}",
+    },
     "one-of": {"en": "one of these: {names}", "ru": "одно из: {names}"},
+    "perhaps": {"en": "perhaps: {names}", "ru": "возможно: {names}"},
+    "caret": {
+        "en": "in Python a power is written x**2: ^ is another operation",
+        "ru": "степень в Python пишется x**2: знак ^ означает другое действие",
+    },
     "not-loaded": {"en": "the submission {error}", "ru": "работа не загрузилась: {error}"},
     "no-function": {
         "en": "defines no function {function}{guess}",
@@ -143,11 +157,12 @@ def say(language: str, key: str, **values: Any) -> str:
 def sentence(text: str) -> str:
     """Return a text as one sentence: a capital first, unless it is a symbol, and one full stop last.
 
-    >>> sentence("wrong at 1 of 2 inputs"), sentence("π is lost."), sentence("why?")
-    ('Wrong at 1 of 2 inputs.', 'π is lost.', 'Why?')
+    >>> sentence("wrong at 1 of 2 inputs"), sentence("π is lost."), sentence("why?"), sentence("p = 1/A")
+    ('Wrong at 1 of 2 inputs.', 'π is lost.', 'Why?', 'p = 1/A.')
     """
     text = text.strip().rstrip(".;")
-    first = text[:1] if "Α" <= text[:1] <= "ω" else text[:1].upper()
+    symbol = "Α" <= text[:1] <= "ω" or text.partition(" ")[2].startswith("= ")
+    first = text[:1] if symbol else text[:1].upper()
     return f"{first}{text[1:]}{'' if text.endswith(('?', '!')) else '.'}" if text else ""
 
 
