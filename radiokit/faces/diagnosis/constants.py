@@ -110,7 +110,7 @@ ENTRIES: tuple[Misconception, ...] = (
     constant(
         "sign-flipped",
         -1.0,
-        "Your answer has the opposite sign: as where a direction points the other way, or the terms of a "
+        "Your answer has the opposite sign, as where a direction points the other way, or the terms of a "
         "difference or limits of integration are exchanged.",
         "У вашего ответа противоположный знак, как при обратном направлении или перестановке членов "
         "разности либо пределов интеграла.",

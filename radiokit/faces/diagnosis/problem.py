@@ -131,7 +131,7 @@ class Problem:
     def scale(self) -> float:
         """The size by which absolute rounding is judged: of the largest number of the reference.
 
-        Where numbers lie so far apart that its rounding would hide half of them, it is that of the middle one.
+        Where numbers lie so far apart that its rounding would hide half of them, it is that of the middle.
         """
         size = np.abs(self.reference[self.reference != 0])
         largest, middle = (float(np.max(size)), float(np.median(size))) if size.size else (0.0, 0.0)
@@ -166,8 +166,8 @@ class Problem:
     def share(self, values: Array, slack: float = 0.0) -> float:
         """Return the share of the telling inputs, those not 0 throughout, at which the answer is ``values``.
 
-        What is below the rounding of the reference counts as 0. Sampled answers must fit together: 0 where the
-        sum of z² over all is too large.
+        What is below the rounding of the reference counts as 0. Sampled answers must fit together: 0 where
+        the sum of z² over all is too large.
         """
         least = ROUNDING * self.scale
         telling = (np.abs(values) > least) | (np.abs(self.answer) > least) | (np.abs(self.reference) > least)

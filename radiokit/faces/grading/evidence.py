@@ -19,6 +19,7 @@ TELLING = ("offset",)
 PLAIN = (
     "horizon-not-clamped",
     "degrees-for-radians",
+    "distance-doubled",
     "square-root",
     "squared",
     "reciprocal",
@@ -82,19 +83,19 @@ def wrong_at(
     count = say(language, "wrong", bad=rows(~good), count=len(right))
     row = _worst(answer, right, good)
     value, truth = _told_apart(answer[row], right[row])
-    return at(count, row, given, language, value=value, right=truth if shown else ""), count
+    key = "witness" if shown else "witness-hidden"
+    return at(f"{count}: ", row, given, language, key, value=value, right=truth), count
 
 
-def at(text: str, row: int, given: Mapping[str, Array], language: str, *, value: str, right: str = "") -> str:
-    """Return a text with the inputs of a row behind it, what it gives, and what is right if that is told."""
+def at(text: str, row: int, given: Mapping[str, Array], language: str, key: str, **values: str) -> str:
+    """Return a text with a sentence behind it that names the inputs of a row."""
     named = [f"{name} = {_brief(_at(each, row))}" for name, each in given.items() if _is_short(each)]
     full = text
     for most in range(len(named), -1, -1):  # fewer inputs where they would be too long
         inputs = ", ".join(named[:most]) + (", …" if most < len(given) else "")
         if not most:
             inputs = say(language, "number", row=row + 1)
-        key = "witness" if right else "witness-hidden"
-        full = f"{text}: {say(language, key, inputs=inputs, value=value, right=right)}"
+        full = f"{text}{say(language, key, inputs=inputs, **values)}"
         if len(full) <= LONGEST // 2:
             break
     return full

@@ -18,6 +18,7 @@ from radiokit.faces.grading.handout.texts import tell
 from radiokit.faces.grading.here import Here
 from radiokit.faces.grading.protocol import plain_text
 from radiokit.faces.grading.question import Question
+from radiokit.faces.grading.russian import in_russian
 from radiokit.faces.grading.words import checked_language, say
 from radiokit.facts.errors import CallableError, TargetError
 
@@ -127,7 +128,8 @@ class Check:
                 finding = Finding(share=0.0, text=say(self._language, "judge-failed", error=problem))
             findings[part.name] = finding
             full = finding.share >= 1
-            raised = callee.where and callee.raised in finding.text
+            said = callee.raised if self._language == "en" else in_russian(callee.raised)
+            raised = callee.where and said in finding.text
             place = f" ({callee.where})" if raised else ""
             shown.append((full, f"{part.title[self._language]}: {finding.text}{place}"))
         if callee.printed.strip():

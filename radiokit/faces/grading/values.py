@@ -173,7 +173,7 @@ class Values:
             hint = "" if key == "zero" else hints.get(name, {}).get(language, "")
             if key == "not-finite":
                 row = int(np.argmin(np.isfinite(answer).reshape(len(answer), -1).all(axis=1)))
-                said = at(said, row, given, language, value=values["value"]) if answer.ndim == 1 else said
+                said = at(f"{said}, ", row, given, language, "such-as")
             text = joined(said, hint)
             return Finding(share=share, text=text, diagnosis=name, confidence=1.0)
         full, count = wrong_at(answer, right, given, good, language, shown=shown)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from radiokit.faces.diagnosis.misconception import LANGUAGES
+from radiokit.faces.grading.russian import in_russian
 from radiokit.facts.errors import ParameterError
 
 __all__ = ["SENTENCES", "Words", "checked_language", "say", "sentence", "words"]
@@ -57,8 +58,8 @@ SENTENCES: Mapping[str, Words] = {
     "zero": {
         "en": "the answer is 0 for all inputs: look for // in place of /, a rounding, or a condition that is "
         "never true",
-        "ru": "ответ равен 0 для всех входных данных: нет ли // вместо /, округления или условия, которое "
-        "никогда не выполняется?",
+        "ru": "ответ равен 0 для всех входных данных: поищите // вместо /, округление или условие, которое "
+        "никогда не выполняется",
     },
     "not-finite": {
         "en": "gives {value} at {bad} of {count} {noun}",
@@ -93,6 +94,7 @@ SENTENCES: Mapping[str, Words] = {
         "en": "at {inputs} it gives {value}",
         "ru": "при {inputs} получено {value}",
     },
+    "such-as": {"en": "such as {inputs}", "ru": "например при {inputs}"},
     "number": {"en": "input no. {row}", "ru": "наборе данных № {row}"},
     "both": {
         "en": "your numbers fit two mistakes at once: {names}",
@@ -151,6 +153,8 @@ def say(language: str, key: str, **values: Any) -> str:
     """
     if "count" in values:
         values.setdefault("noun", _noun(language, values["count"]))
+    if language == "ru" and isinstance(values.get("error"), str):
+        values["error"] = in_russian(values["error"])
     return SENTENCES[key][language].format(**values)
 
 

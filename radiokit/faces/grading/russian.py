@@ -1,0 +1,55 @@
+"""Russian: what a submission did instead of answering, in Russian; the child and its keeper say it in English."""
+
+from __future__ import annotations
+
+import re
+
+__all__ = ["in_russian"]
+
+_KNOWN = {
+    r"returned None: is a return statement missing\?": "вернулось None: не забыт ли return?",
+    r"returned None among its values": "среди возвращённых значений есть None",
+    r"returned one value where (\d+) are wanted, as in return (.+)": "вернулось одно значение, а нужно {0}: "
+    "return {1}",
+    r"returned (\d+) values where (\d+) are wanted": "число возвращённых значений — {0}, а нужно {1}",
+    r"returned different numbers of values for different rows": "для разных строк возвращается разное число "
+    "значений",
+    r"returned shape (\(.*\)) for row 0 and (\(.*\)) for row (\d+)": "для строки 0 вернулась форма {0}, а для "
+    "строки {2} — {1}",
+    r"returned (.+) of numbers in all: too much": "вернулось слишком много чисел: {0}",
+    r"returned an array of shape (.+), (.+): too much": "вернулся слишком большой массив: форма {0}, {1}",
+    r"returned a (\w+) whose parts have different lengths": "вернулся {0}, части которого разной длины",
+    r"returned more numbers than fit in memory": "вернулось больше чисел, чем помещается в памяти",
+    r"returned an array of (\d+) dimensions, shape (.+)": "вернулся массив слишком большой размерности: {0}, "
+    "форма {1}",
+    r"returned (.+) that is no array of numbers": "вернулся тип {0}, а нужен массив чисел",
+    r"returned (\w+) that is no number": "вернулся тип {0}, а нужно число",
+    r"returned a number that is too large for a float": "вернулось число, слишком большое для float",
+    r"defines no function (\S+)": "функция {0} не определена",
+    r"raised (\w+)": "ошибка {0}",
+    r"raised (\w+): (.*)": "ошибка {0}: {1}",
+    r"took longer than (\S+) s": "работа длилась дольше {0} с",
+    r"took longer than (\S+) s in all": "вместе вызовы длились дольше {0} с",
+    r"used more than (\S+) GiB of memory": "занято больше {0} ГиБ памяти",
+    r"was ended by (\w+)": "процесс остановлен сигналом {0}",
+    r"ended its process with exit code (-?\d+)": "процесс завершился с кодом {0}",
+    r"printed more than (\d+) bytes": "напечатано больше {0} байт",
+}
+
+
+def in_russian(error: str) -> str:
+    """Return what is said of a submission in Russian, or as it is where that is not known.
+
+    >>> in_russian("raised NameError: name 'pi' is not defined")
+    "ошибка NameError: name 'pi' is not defined"
+    >>> in_russian("could not be loaded: it took longer than 5 s")
+    'не загружается: работа длилась дольше 5 с'
+    """
+    before, loading, rest = error.partition("could not be loaded: it ")
+    if loading and not before:
+        return f"не загружается: {in_russian(rest)}"
+    for english, russian in _KNOWN.items():
+        found = re.fullmatch(english, error, re.DOTALL)
+        if found:
+            return russian.format(*found.groups())
+    return error
