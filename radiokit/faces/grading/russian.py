@@ -1,4 +1,4 @@
-"""Russian: what a submission did instead of answering, in Russian; the child and its keeper say it in English."""
+"""Russian: what a submission did instead of answering; the child and its keeper say it in English."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ _KNOWN = {
     r"returned (\d+) values where (\d+) are wanted": "число возвращённых значений — {0}, а нужно {1}",
     r"returned different numbers of values for different rows": "для разных строк возвращается разное число "
     "значений",
-    r"returned shape (\(.*\)) for row 0 and (\(.*\)) for row (\d+)": "для строки 0 вернулась форма {0}, а для "
-    "строки {2} — {1}",
+    r"returned shape (\(.*\)) for row 0 and (\(.*\)) for row (\d+)": "для строки 0 вернулась форма {0}, а "
+    "для строки {2} — {1}",
     r"returned (.+) of numbers in all: too much": "вернулось слишком много чисел: {0}",
     r"returned an array of shape (.+), (.+): too much": "вернулся слишком большой массив: форма {0}, {1}",
     r"returned a (\w+) whose parts have different lengths": "вернулся {0}, части которого разной длины",

@@ -163,9 +163,12 @@ def sentence(text: str) -> str:
 
     >>> sentence("wrong at 1 of 2 inputs"), sentence("π is lost."), sentence("why?"), sentence("p = 1/A")
     ('Wrong at 1 of 2 inputs.', 'π is lost.', 'Why?', 'p = 1/A.')
+    >>> sentence("half_cosine returned None")
+    'half_cosine returned None.'
     """
     text = text.strip().rstrip(".;")
-    symbol = "Α" <= text[:1] <= "ω" or text.partition(" ")[2].startswith("= ")
+    word, _, rest = text.partition(" ")
+    symbol = "Α" <= text[:1] <= "ω" or "_" in word or rest.startswith("= ")
     first = text[:1] if symbol else text[:1].upper()
     return f"{first}{text[1:]}{'' if text.endswith(('?', '!')) else '.'}" if text else ""
 

@@ -1,0 +1,209 @@
+"""False diagnoses: what is said of plausible slips is true of them, and names no cause that is not there."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import radiokit as rk
+from radiokit.faces.grading import Finding, load_assignment, student_rng
+from radiokit.faces.grading.evidence import guesses
+from radiokit.faces.grading.here import Here
+from radiokit.faces.grading.russian import in_russian
+
+
+def found(work: str, part: str, code: str, language: str = "en") -> Finding:
+    """Judge a part of a question of its function, ``name(arguments): code`` being the only line of it."""
+    names: dict[str, Any] = {"np": np, "math": math}
+    exec(f"def {code}", names)
+    assignment = load_assignment(work)
+    question = assignment.question(code.split("(")[0])
+    asked = next(each for each in question.parts if each.name == part)
+    return asked.judge.judge(
+        Here(names[question.name], question.name, names),
+        student_rng(assignment, question, asked, student="slips"),
+        language=language,
+        hints=question.hints,
+        shown=asked.visibility == "visible",
+    )
+
+
+FURNACE = "furnace(a, n, seed): c = np.random.default_rng(seed).random(n); w ="
+MEAN = "; return w.mean(), w.std() / np.sqrt(n)"
+LOBE = "lobe_sample(u, n): p = 2 * np.pi * u[:, 1]; z ="
+AROUND = "; r = np.sqrt(1 - z * z); return np.stack([r * np.cos(p), r * np.sin(p), z], -1)"
+BLINN = (
+    "blinn_phong(wi, wo, n): h = wi + wo; c = h[..., 2] / np.linalg.norm(h, axis=-1); s = (n + 2) * (n + 4)"
+)
+
+SLIPS = {
+    "numbers 600 decades apart fit no root, no order": (
+        ("radiometry", "hard", "isotropic_irradiance(f, d): return f / (4 * np.pi * d**2 + 1e-3)"),
+        "",
+        "wrong at",
+    ),
+    "twice for squared": (
+        ("radiometry", "ordinary", "isotropic_irradiance(f, d): return f / (4 * np.pi * d * 2)"),
+        "distance-doubled",
+        "it is d**2, not d*2. ",
+    ),
+    "twice for squared, multiplied": (
+        ("radiometry", "ordinary", "isotropic_irradiance(f, d): return f / (4 * np.pi) / d * 2"),
+        "distance-doubled",
+        "it is d**2, not d*2. ",
+    ),
+    "one factor of 8 is not two mistakes": (
+        ("brdfs", "ordinary", f"{BLINN}; return s / (np.pi * (2.0 ** (-n / 2) + n)) * c**n"),
+        "",
+        "8 times the reference",
+    ),
+    "no sine in a lamp": (
+        (
+            "radiometry",
+            "ordinary",
+            "lamp_irradiance(i, d, t): return i * np.maximum(0, 1 / np.tan(t / 57.29577951308232)) / d**2",
+        ),
+        "sine-forgotten",
+        "cotangent",
+    ),
+    "one angle twice": (
+        (
+            "radiometry",
+            "ordinary",
+            "patch_irradiance(L, A, d, t, u): return L * A * np.maximum(0, np.cos(t)) ** 2 / d**2",
+        ),
+        "theta-twice",
+        "the other angle",
+    ),
+    "one end of a step": (
+        (
+            "radiometry",
+            "ordinary",
+            "luminance(w, m, v): return 683 / np.pi * np.sum((m * v)[..., :-1] * np.diff(w), -1)",
+        ),
+        "one-end",
+        "mean of both ends",
+    ),
+    "the last step": (
+        (
+            "radiometry",
+            "ordinary",
+            "luminance(w, m, v): return 683 / np.pi * np.trapezoid((m * v)[..., :-1], w[..., :-1])",
+        ),
+        "last-step-forgotten",
+        "left out the last step",
+    ),
+    "division //": (
+        ("brdfs", "ordinary", "lambert(wi, wo, rho): return rho // np.pi * (wi[..., 2] > 0)"),
+        "constant-answer",
+        "look for // in place of /",
+    ),
+    "no horizon": (
+        ("brdfs", "hard", "lambert(wi, wo, rho): return rho / np.pi * (wi[..., 2] > 0)"),
+        "horizon-not-clamped",
+        "wi or wo is not above the horizon",
+    ),
+    "^": (
+        ("radiometry", "ordinary", "cone_solid_angle(a): return 4 * np.pi * np.sin(a / 2)^2"),
+        "",
+        "x**2",
+    ),
+    "a few tiny answers are not the same": (
+        ("radiometry", "hard", "reflected_radiance(r, L, c, w): return r * 1e-16 / L[..., 0]"),
+        "",
+        "wrong at",
+    ),
+    "a power of the distance in a weight": (
+        ("shading", "ordinary", "mis_weight(d, c, A, p): return d / (d**2 + A * c * p)"),
+        "distance-cubed",
+        "p_ω = p_A d²/cos θ'",
+    ),
+    "a formula keeps its letters": (
+        ("shading", "ordinary", "mis_weight(d, c, A, p): return d**2 / (d**2 + A / c * p)"),
+        "cosine-multiplied",
+        "p = p_A d²",
+    ),
+    "the density of the sphere": (
+        ("shading", "unbiased", f"{FURNACE} 4 * a * c{MEAN}"),
+        "cosine-forgotten",
+        "one of these: ",
+    ),
+    "a uniform angle": (
+        ("shading", "unbiased", f"{FURNACE} 2 * a * np.cos(c * np.pi / 2){MEAN}"),
+        "angle-uniform",
+        "it is cos θ that is uniform",
+    ),
+    "the density multiplied": (
+        ("shading", "unbiased", f"{FURNACE} a * c / 2 / np.pi**2{MEAN}"),
+        "pdf-multiplied",
+        "perhaps: you multiplied",
+    ),
+    "values that are cut off to 0": (
+        ("shading", "unbiased", f"{FURNACE} 2 * a * (c // 1){MEAN}"),
+        "constant-answer",
+        "look for // in place of /",
+    ),
+    "a small error is not 0": (
+        ("shading", "honest", f"{FURNACE} 2 * a * c; return w.mean(), w.std() / n**2"),
+        "error-too-small",
+        "too small",
+    ),
+    "error and value exchanged": (
+        ("shading", "unbiased", f"{FURNACE} 2 * a * c; return w.std() / np.sqrt(n), w.mean()"),
+        "error-first",
+        "the standard error first",
+    ),
+    "numbers that are used": (
+        ("shading", "distribution", f"{LOBE} u[:, 0] ** (n + 1){AROUND}"),
+        "part-only",
+        "look at the range of θ",
+    ),
+    "a range of θ": (
+        ("shading", "distribution", f"{LOBE} u[:, 0] / (n + 1){AROUND}"),
+        "part-only",
+        "look at the range of θ",
+    ),
+    "a range of φ": (
+        ("shading", "distribution", f"{LOBE} u[:, 0] ** (1 / (n + 1)); p = p / 2{AROUND}"),
+        "quarter-only",
+        "azimuth",
+    ),
+}
+
+
+@pytest.mark.parametrize("slip", SLIPS)
+@pytest.mark.parametrize("language", ["en", "ru"])
+def test_what_is_said_of_a_slip_is_true_of_it(slip: str, language: str) -> None:
+    asked, diagnosis, words = SLIPS[slip]
+    told = found(*asked, language=language)
+    assert told.share < 1
+    assert told.diagnosis == diagnosis, told.text
+    if language == "en":
+        assert words.lower() in told.text.lower()
+    else:
+        assert sum("а" <= letter <= "я" for letter in told.text) > 8
+    assert not (
+        set(rk.list_misconceptions()) & {*told.text.lower().replace(".", " ").split()} - {"doubled", "halved"}
+    )
+
+
+def test_two_slips_at_once_are_said_in_words() -> None:
+    told = found("shading", "unbiased", f"{FURNACE} a * 0.8 / np.pi**2 * c{MEAN}")
+    assert " + " not in told.diagnosis or "fit two mistakes" in told.text
+    assert guesses(["this"], "ru") == "возможно: this"
+
+
+def test_what_a_function_did_instead_is_said_in_russian() -> None:
+    for error, russian in {
+        "returned None: is a return statement missing?": "вернулось None: не забыт ли return?",
+        "returned dict that is no array of numbers": "вернулся тип dict, а нужен массив чисел",
+        "raised NameError: name 'pi' is not defined": "ошибка NameError: name 'pi' is not defined",
+        "took longer than 10 s": "работа длилась дольше 10 с",
+        "something else": "something else",
+    }.items():
+        assert in_russian(error) == russian
+    told = found("radiometry", "ordinary", "cone_solid_angle(a): print(a)", "ru")
+    assert told.text == "cone_solid_angle: вернулось None: не забыт ли return?"
