@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -207,3 +209,27 @@ def test_what_a_function_did_instead_is_said_in_russian() -> None:
         assert in_russian(error) == russian
     told = found("radiometry", "ordinary", "cone_solid_angle(a): print(a)", "ru")
     assert told.text == "cone_solid_angle: вернулось None: не забыт ли return?"
+
+
+NOTEBOOK = """
+{"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": [
+  {"cell_type": "code", "metadata": {}, "outputs": [], "execution_count": null, "id": "a", "source":
+    "if __name__ == '__main__':\\n    def cone_irradiance(L, a):\\n        return 3.141592653589793 * L"},
+  {"cell_type": "code", "metadata": {}, "outputs": [], "execution_count": null, "id": "b", "source":
+    "def conical_solid_angle(a):\\n    pass"},
+  {"cell_type": "code", "metadata": {}, "outputs": [], "execution_count": null, "id": "c", "source": "1 / 0"}
+]}
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a sandbox needs a POSIX system")
+def test_a_notebook_is_the_main_module_and_its_names_are_not_taken_for_others(tmp_path: Path) -> None:
+    file = tmp_path / "theirs.ipynb"
+    file.write_text(NOTEBOOK, encoding="utf-8")
+    asked = ["cone_irradiance", "cone_solid_angle", "patch_irradiance"]
+    graded = rk.grading.grade("radiometry", file, language="ru", questions=asked)
+    solid_angle, irradiance, patch = (question.parts[0].text for question in graded.questions)
+    assert irradiance.startswith("πL даёт вся полусфера")
+    assert "может быть, это conical_solid_angle?" in solid_angle
+    assert "может быть" not in patch  # cone_irradiance answers another question
+    assert graded.problems == ("ячейка 3, строка 1: ошибка ZeroDivisionError: division by zero",)

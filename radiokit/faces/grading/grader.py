@@ -93,6 +93,7 @@ def grade(
         When the assignment, a question or the submission is not there, or no sandbox can be started.
     """
     work = load_assignment(assignment)
+    taken = {each.name for each in work.questions}
     if questions is not None:
         wanted = {work.question(name).name for name in questions}
         work = replace(work, questions=tuple(each for each in work.questions if each.name in wanted))
@@ -120,7 +121,8 @@ def grade(
             if question.name in done:
                 grades.append(done[question.name])
             else:
-                absent = _absent(sandbox, question, loaded, names, problems, language)
+                others = [name for name in names if name == question.name or name not in taken]
+                absent = _absent(sandbox, question, loaded, others, problems, language)
                 found, review, numbers = (
                     ({part.name: absent for part in question.parts}, "", {})
                     if absent is not None

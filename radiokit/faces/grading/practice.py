@@ -18,7 +18,7 @@ from radiokit.faces.grading.handout.texts import tell
 from radiokit.faces.grading.here import Here
 from radiokit.faces.grading.protocol import plain_text
 from radiokit.faces.grading.question import Question
-from radiokit.faces.grading.russian import in_russian
+from radiokit.faces.grading.russian import in_russian, place_in_russian
 from radiokit.faces.grading.words import checked_language, say
 from radiokit.facts.errors import CallableError, TargetError
 
@@ -130,7 +130,8 @@ class Check:
             full = finding.share >= 1
             said = callee.raised if self._language == "en" else in_russian(callee.raised)
             raised = callee.where and said in finding.text
-            place = f" ({callee.where})" if raised else ""
+            where = callee.where if self._language == "en" else place_in_russian(callee.where)
+            place = f" ({where})" if raised else ""
             shown.append((full, f"{part.title[self._language]}: {finding.text}{place}"))
         if callee.printed.strip():
             shown.append((None, tell(self._language, "printed", text=plain_text(callee.printed))))

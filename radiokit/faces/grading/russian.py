@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-__all__ = ["in_russian"]
+__all__ = ["in_russian", "place_in_russian"]
 
 _KNOWN = {
     r"returned None: is a return statement missing\?": "вернулось None: не забыт ли return?",
@@ -28,6 +28,9 @@ _KNOWN = {
     r"defines no function (\S+)": "функция {0} не определена",
     r"raised (\w+)": "ошибка {0}",
     r"raised (\w+): (.*)": "ошибка {0}: {1}",
+    r"it is no Jupyter notebook of format 3 or 4": "это не блокнот Jupyter формата 3 или 4",
+    r"it was stopped, as it took too long": "выполнение остановлено: оно длилось слишком долго",
+    r"(.+) is left out: IPython alone knows it": "{0} пропущено: это команда одного IPython",
     r"took longer than (\S+) s": "работа длилась дольше {0} с",
     r"took longer than (\S+) s in all": "вместе вызовы длились дольше {0} с",
     r"used more than (\S+) GiB of memory": "занято больше {0} ГиБ памяти",
@@ -53,3 +56,17 @@ def in_russian(error: str) -> str:
         if found:
             return russian.format(*found.groups())
     return error
+
+
+def place_in_russian(where: str) -> str:
+    """Return a place in a submission in Russian.
+
+    >>> place_in_russian("cell 3, line 2: return x^2")
+    'ячейка 3, строка 2: return x^2'
+    """
+    found = re.fullmatch(r"(?:cell (\d+))?(?:, )?(?:line (\d+))?(:.*)?", where, re.DOTALL)
+    if not found:
+        return where
+    cell, line, rest = found.groups()
+    named = [f"ячейка {cell}"] * bool(cell) + [f"строка {line}"] * bool(line)
+    return ", ".join(named) + (rest or "")

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from radiokit.faces.diagnosis.misconception import LANGUAGES
-from radiokit.faces.grading.russian import in_russian
+from radiokit.faces.grading.russian import in_russian, place_in_russian
 from radiokit.facts.errors import ParameterError
 
 __all__ = ["SENTENCES", "Words", "checked_language", "say", "sentence", "words"]
@@ -153,8 +153,9 @@ def say(language: str, key: str, **values: Any) -> str:
     """
     if "count" in values:
         values.setdefault("noun", _noun(language, values["count"]))
-    if language == "ru" and isinstance(values.get("error"), str):
-        values["error"] = in_russian(values["error"])
+    if language == "ru":
+        values |= {name: in_russian(values[name]) for name in ("error", "message") if name in values}
+        values |= {name: place_in_russian(values[name]) for name in ("where",) if name in values}
     return SENTENCES[key][language].format(**values)
 
 
