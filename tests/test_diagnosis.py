@@ -60,6 +60,7 @@ def h(i: dict[str, Any]) -> Any:
 FACTORS: dict[str, Callable[[dict[str, Any]], Any]] = {
     "pi-too-many": lambda i: math.pi,
     "pi-too-few": lambda i: 1 / math.pi,
+    "pi-multiplied": lambda i: math.pi**2,
     "doubled": lambda i: 2,
     "halved": lambda i: 0.5,
     "four-too-many": lambda i: 4,

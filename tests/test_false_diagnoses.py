@@ -98,6 +98,20 @@ SLIPS = {
         "last-step-forgotten",
         "left out the last step",
     ),
+    "a missing bracket": (
+        ("radiometry", "ordinary", "isotropic_irradiance(f, d): return f / 4 * np.pi / d**2"),
+        "pi-multiplied",
+        "x / (2 * π)",
+    ),
+    "arrays mixed, and the horizon": (
+        (
+            "brdfs",
+            "hard",
+            "half_cosine(wi, wo): h = wi + wo; return h[..., 2] / (np.linalg.norm(h) + 1e-300)",
+        ),
+        "horizon-not-clamped",
+        "wi or wo is not above the horizon",
+    ),
     "division //": (
         ("brdfs", "ordinary", "lambert(wi, wo, rho): return rho // np.pi * (wi[..., 2] > 0)"),
         "constant-answer",

@@ -41,6 +41,14 @@ ENTRIES: tuple[Misconception, ...] = (
         pairs=True,
     ),
     constant(
+        "pi-multiplied",
+        math.pi**2,
+        "Your answer is π² times too large: you multiplied by π where you should divide, as x / 2 * π does "
+        "for x / (2 * π).",
+        "Ваш ответ в π² раз больше верного: вы умножили на π вместо деления, как в x / 2 * π вместо "
+        "x / (2 * π).",
+    ),
+    constant(
         "doubled",
         2.0,
         "Your answer is twice the right one: a factor of 2 is too many, as where both sides count or a "
