@@ -12,6 +12,7 @@ import numpy as np
 from radiokit.faces.diagnosis.catalogue import CATALOGUE
 from radiokit.faces.diagnosis.diagnose import diagnose
 from radiokit.faces.diagnosis.result import Suspicion
+from radiokit.faces.grading.exact import Reference, as_function, no_inputs
 from radiokit.faces.grading.finding import Callee, Finding
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.runs import FLOOR, Runs, UnusableError, gather
@@ -57,11 +58,11 @@ class Estimator:
 
     Parameters
     ----------
-    inputs : callable
+    reference : callable, Case or float
+        ``reference(**inputs)`` gives the exact value, which is not 0; or a closed-form case, or the value.
+    inputs : callable, optional
         From a generator to the inputs by name, numbers or arrays, in the order of the parameters, without
-        ``samples`` and ``seed``.
-    reference : callable
-        ``reference(**inputs)`` gives the exact value, which is not 0.
+        ``samples`` and ``seed``; none by default.
     aspect : {"value", "error", "efficiency"}
     samples : int
         N, at least 64.
@@ -103,8 +104,8 @@ class Estimator:
     192
     """
 
-    inputs: Callable[[np.random.Generator], Mapping[str, Any]]
-    reference: Callable[..., Any]
+    reference: Reference
+    inputs: Callable[[np.random.Generator], Mapping[str, Any]] = no_inputs
     aspect: Aspect = "value"
     samples: int = 256
     runs: int = 24
@@ -119,6 +120,7 @@ class Estimator:
     slowest: float = 1e-3
 
     def __post_init__(self) -> None:
+        as_function(self.reference)
         if self.aspect not in get_args(Aspect):
             raise ParameterError("aspect", self.aspect, ", ".join(get_args(Aspect)))
         for name, least in (("samples", 64), ("runs", 8), ("cases", 1)):
@@ -150,7 +152,7 @@ class Estimator:
                     callee,
                     rng,
                     inputs=self.inputs,
-                    reference=self.reference,
+                    reference=as_function(self.reference),
                     cases=self.cases,
                     samples=self.samples,
                     runs=self.runs,
@@ -293,12 +295,12 @@ class Estimator:
         }
         error = WIDER * np.sqrt(runs.variances / runs.values.shape[1]) + runs.floor / 10
 
+        exact = as_function(self.reference)
+
         def reference(**changed: Any) -> Array:
             return np.array(
                 [
-                    float(
-                        self.reference(**{n: changed[n][k] if n in changed else v for n, v in inputs.items()})
-                    )
+                    float(exact(**{n: changed[n][k] if n in changed else v for n, v in inputs.items()}))
                     for k, inputs in enumerate(runs.inputs)
                 ]
             )

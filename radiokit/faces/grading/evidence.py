@@ -79,10 +79,13 @@ def wrong_at(
     answer: Array, right: Array, given: Mapping[str, Array], good: Array, language: str, *, shown: bool
 ) -> tuple[str, str]:
     """Return how often an answer is wrong, with the worst input and what comes out there, and without."""
-    count = say(language, "wrong", bad=rows(~good), count=len(right))
     row = _worst(answer, right, good)
     named = [f"{name} = {_brief(_at(value, row))}" for name, value in given.items() if _is_short(value)]
     value, truth = _told_apart(answer[row], right[row])
+    if not given:
+        alone = say(language, "number-shown" if shown else "number-hidden", value=value, right=truth)
+        return alone, alone
+    count = say(language, "wrong", bad=rows(~good), count=len(right))
     full = count
     for most in range(len(named), -1, -1):  # fewer inputs where they would be too long
         inputs = ", ".join(named[:most]) + (", …" if most < len(given) else "")

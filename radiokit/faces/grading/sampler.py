@@ -14,6 +14,7 @@ from radiokit.faces.diagnosis.catalogue import CATALOGUE
 from radiokit.faces.diagnosis.diagnose import diagnose
 from radiokit.faces.grading.directions import ASKED, UNIFORM, integral, probes, uniform_variance
 from radiokit.faces.grading.draws import Draws, Fit, cells_of_density, sampled, u_slip
+from radiokit.faces.grading.exact import no_inputs
 from radiokit.faces.grading.finding import Callee, Finding
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.runs import UnusableError
@@ -31,10 +32,6 @@ FITS = 1e-3
 
 SURE = 0.5
 """From which confidence on a misconception is named."""
-
-
-def _nothing(rng: np.random.Generator) -> Mapping[str, Any]:
-    return {}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,7 +91,7 @@ class Sampler:
     """
 
     density: Callable[..., Any]
-    inputs: Callable[[np.random.Generator], Mapping[str, Any]] = _nothing
+    inputs: Callable[[np.random.Generator], Mapping[str, Any]] = no_inputs
     aspect: SamplerAspect = "distribution"
     pdf: str = ""
     integrand: Callable[..., Any] | None = None
