@@ -27,6 +27,7 @@ from radiokit.faces.grading.runtests import (
     rate,
     rate_slip,
 )
+from radiokit.faces.grading.russian import translated
 from radiokit.faces.grading.samplewords import PLAIN, line, slip, tell
 from radiokit.faces.grading.words import say
 from radiokit.facts.errors import ParameterError
@@ -282,7 +283,7 @@ class Estimator:
                 return [say(language, "one-of", names=names), seen], first.name, first.confidence
             why = slip(language, first.name, hints)
             if first.detail and first.name not in hints and first.name not in PLAIN:
-                why = f"{first.message.rstrip('.')} ({first.detail})"
+                why = f"{first.message.rstrip('.')} ({translated(language, first.detail)})"
             return [why, seen], first.name, first.confidence
         return [seen], "", 0.0
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from radiokit.faces.grading.protocol import Array, plain_text
+from radiokit.faces.grading.russian import translated
 from radiokit.faces.grading.words import say, sentence
 
 __all__ = ["LONGEST", "clause", "hint_for", "joined", "rows", "wrong_at"]
@@ -70,7 +71,8 @@ def hint_for(
     """
     if suspicion.name in hints:
         return hints[suspicion.name][language]
-    detail = "" if suspicion.name in (PLAIN if shown else PLAIN + TELLING) else suspicion.detail
+    hidden = suspicion.name in (PLAIN if shown else PLAIN + TELLING)
+    detail = "" if hidden else translated(language, suspicion.detail)
     hint: str = suspicion.message.rstrip(".")
     return f"{hint} ({detail})" if detail else hint
 

@@ -17,6 +17,7 @@ from radiokit.faces.grading.protocol import Array, plain_text
 from radiokit.faces.grading.question import Part, Question
 from radiokit.faces.grading.remote import remote_bsdf
 from radiokit.faces.grading.result import Result
+from radiokit.faces.grading.russian import told, translated
 from radiokit.faces.grading.sandbox import Sandbox
 from radiokit.faces.grading.words import checked_language, say
 from radiokit.facts.errors import CallableError, TargetError
@@ -171,7 +172,7 @@ def _judged(
                     shown=shown,
                 )
         except (CallableError, TargetError) as error:
-            finding = Finding(share=0.0, text=plain_text(error))
+            finding = Finding(share=0.0, text=told(language, error))
         except Exception as error:  # no answer may stop the grading: a person will look
             review = plain_text(f"{type(error).__name__}: {error}")
             finding = Finding(share=0.0, text=say(language, "judge-failed", error=review))
@@ -200,11 +201,15 @@ def _graded(question: Question, found: Mapping[str, Finding], review: str, langu
 
 def _problems(loaded: Result, language: str) -> tuple[str, ...]:
     if not loaded.ok:
-        return (say(language, "not-loaded", error=loaded.error),)
-    return tuple(
-        say(language, "problem" if each["raised"] else "remark", **each)
-        for each in loaded.facts.get("problems", ())
-    )
+        return (say(language, "not-loaded", error=translated(language, loaded.error)),)
+    return tuple(_problem(each, language) for each in loaded.facts.get("problems", ()))
+
+
+def _problem(found: Mapping[str, str], language: str) -> str:
+    key = "problem" if found["raised"] else "remark"
+    where, message = (translated(language, found[name]) for name in ("where", "message"))
+    text = say(language, key, where=where, raised=found["raised"], message=message)
+    return text.lstrip(": ")  # where no place is known
 
 
 def _absent(

@@ -18,6 +18,7 @@ from radiokit.faces.grading.handout.texts import tell
 from radiokit.faces.grading.here import Here
 from radiokit.faces.grading.protocol import plain_text
 from radiokit.faces.grading.question import Question
+from radiokit.faces.grading.russian import told, translated
 from radiokit.faces.grading.words import checked_language, say
 from radiokit.facts.errors import CallableError, TargetError
 
@@ -119,14 +120,14 @@ class Check:
                     callee, rng, language=self._language, hints=question.hints, shown=True
                 )
             except (CallableError, TargetError) as error:
-                finding = Finding(share=0.0, text=plain_text(error))
+                finding = Finding(share=0.0, text=told(self._language, error))
             except Exception as error:  # as in the grader: no answer may break the judges
                 problem = plain_text(f"{type(error).__name__}: {error}")
                 finding = Finding(share=0.0, text=say(self._language, "judge-failed", error=problem))
             findings[part.name] = finding
             full = finding.share >= 1
-            raised = callee.where and callee.raised in finding.text
-            place = f" ({callee.where})" if raised else ""
+            raised = callee.where and translated(self._language, callee.raised) in finding.text
+            place = f" ({self._place(callee.where)})" if raised else ""
             shown.append((full, f"{part.title[self._language]}: {finding.text}{place}"))
         for callee in callees.values():
             if callee.printed.strip():
@@ -137,6 +138,11 @@ class Check:
         done = not any(missing.values())
         right = done and all(finding.share >= 1 for finding in findings.values()) if findings else None
         return Checked(name=question.name, right=right, lines=tuple(shown), findings=findings)
+
+    def _place(self, where: str) -> str:
+        """Return where a function raised, in words, with the line that did."""
+        place, colon, line = where.partition(": ")
+        return f"{translated(self._language, place)}{colon}{line}"
 
 
 def practice(assignment: str | Path | Assignment, *, language: str = "en", student: str = "") -> Check:

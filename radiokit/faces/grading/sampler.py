@@ -19,6 +19,7 @@ from radiokit.faces.grading.finding import Callee, Finding
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.runs import UnusableError
 from radiokit.faces.grading.runtests import ROUNDS, each_level
+from radiokit.faces.grading.russian import translated
 from radiokit.faces.grading.samplewords import PLAIN, line, slip, tell
 from radiokit.facts.errors import ParameterError
 from radiokit.measure.statistics import bernstein_test
@@ -246,7 +247,7 @@ class Sampler:
             if first is not None and not found.ambiguous and first.confidence >= SURE:
                 text = slip(language, first.name, hints)
                 if first.detail and first.name not in hints and first.name not in PLAIN:
-                    text = f"{first.message.rstrip('.')} ({first.detail})"
+                    text = f"{first.message.rstrip('.')} ({translated(language, first.detail)})"
                 return first.name, text, first.confidence
             ratio = claimed[right > 0] / right[right > 0]
             steady = np.ptp(ratio) <= self.rtol * abs(ratio).max()

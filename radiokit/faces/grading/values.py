@@ -19,6 +19,7 @@ from radiokit.faces.grading.exact import Reference, as_function, no_inputs
 from radiokit.faces.grading.finding import Callee, Finding
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.result import Result
+from radiokit.faces.grading.russian import did
 from radiokit.faces.grading.words import say, sentence
 from radiokit.facts.errors import ParameterError
 
@@ -286,7 +287,7 @@ def _raised(
     hints: Mapping[str, Mapping[str, str]],
 ) -> Finding:
     """Say what a function did instead of answering, and why if its inputs leave the range of numbers."""
-    text = say(language, "call", function=name, error=result.error)
+    text = did(language, name, result.error)
     if result.raised in ("OverflowError", "ZeroDivisionError") and any(map(is_extreme, given.values())):
         hint = hints.get("out-of-range", {}).get(language, "")
         text = f"{text}. {sentence(hint)}" if hint else text
