@@ -20,7 +20,7 @@ from typing import Any
 __all__: list[str] = []
 
 PACKAGE = "radiokit.faces.grading."
-PARTS = ("sources", "imports", "protocol", "loading", "answers")
+PARTS = ("sources", "imports", "protocol", "loading", "answers", "signature")
 HIGH = 40
 """The first file descriptor tried for the private pipes."""
 BRANCH_ENDED = 90
@@ -56,7 +56,7 @@ class _Child:
         parts = {name: _beside(name) for name in PARTS}
         for name in PARTS:  # a submission finds them under names that no other module has
             sys.modules[f"_{name}"] = sys.modules.pop(PACKAGE + name)
-        self._protocol, self._loading, self._answers = (parts[name] for name in PARTS[-3:])
+        self._protocol, self._loading, self._answers, self._signature = (parts[name] for name in PARTS[2:])
         self._finder = parts["imports"].Finder()
         self._requests, self._results = requests, results
         self._pack, self._text = self._protocol.pack, self._protocol.plain_text
@@ -146,7 +146,7 @@ class _Child:
         for part in request["function"].split("."):
             found = getattr(found, part, None)
         if request.get("facts"):
-            return {"facts": _facts(found)}, []
+            return {"facts": {**_facts(found), "parameters": self._signature.listed(found)}}, []
         if found is None:
             return {"refused": f"defines no function {request['function']!r}"}, []
         if not callable(found):

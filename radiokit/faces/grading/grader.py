@@ -37,8 +37,8 @@ class Isolated:
         return self.sandbox.call(self.name, *arrays, mode=mode, outputs=outputs, seed=seed)
 
     def bsdf(self, parameters: Mapping[str, Any] | None = None) -> BSDF:
-        """Return it as a BSDF."""
-        return remote_bsdf(self.sandbox, self.name, parameters=parameters)
+        """Return it as a BSDF; parameters that it has other names for are passed by position."""
+        return remote_bsdf(self.sandbox, self.name, parameters=parameters, by_position=True)
 
     def other(self, name: str) -> Isolated:
         """Return another function of the same submission."""
