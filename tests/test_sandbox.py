@@ -389,6 +389,7 @@ def test_nothing_outlives_a_killed_parent(tmp_path, name):
                 (b'{"arrays": [["<f8", [1e300]]]}', "not of lengths"),
                 (b'{"arrays": [["<f8", [1099511627775, 1099511627775]]]}', "are claimed, 8 came"),
                 (b'{"arrays": [["<f8", [1, 1, 1, 1, 1]]]}', "more than 4 dimensions"),
+                (b'{"arrays": [["<f8", [0, 549755813888, 549755813888]]]}', "too large"),
                 (b'{"arrays": [["<f8", [2]]]}', "16 bytes are claimed, 8 came"),
             ]
         ),
