@@ -142,6 +142,6 @@ def _size(described: Any) -> int:
         raise MalformedError(f"an array has no shape, or more than {DIMENSIONS} dimensions")
     if not all(type(length) is int and 0 <= length < 1 << 40 for length in shape):
         raise MalformedError("an array's shape is not of lengths")
-    if math.prod(length or 1 for length in shape) >= 1 << 40:  # one that is empty has a size for NumPy, too
-        raise MalformedError("an array's shape is too large")
+    if 0 in shape and math.prod(length or 1 for length in shape) >= 1 << 40:  # of which NumPy makes no array
+        raise MalformedError("an empty array's shape is too large")
     return TYPES[kind] * math.prod(shape)
