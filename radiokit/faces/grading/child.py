@@ -201,8 +201,8 @@ def _children() -> set[int]:
     """Return the processes whose parent this is, where that is told."""
     found: set[int] = set()
     with contextlib.suppress(OSError):
-        for task in os.listdir("/proc/self/task"):
-            found |= set(map(int, Path(f"/proc/self/task/{task}/children").read_text().split()))
+        for task in Path("/proc/self/task").iterdir():
+            found |= set(map(int, (task / "children").read_text().split()))
     return found
 
 

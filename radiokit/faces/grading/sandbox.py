@@ -218,7 +218,7 @@ class Sandbox:
         """Let the calls inside begin from the submission as it was loaded; what they change is forgotten.
 
         They take place in a copy of the process, and what that starts ends with it. What they write into
-        files stays. The copy is one of the submission's own code: one that is hostile can keep more, to nobody's
+        files stays. The copy runs the submission's own code: one that is hostile can keep more, to nobody's
         harm but its own.
         """
         self._apart = True

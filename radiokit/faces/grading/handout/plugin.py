@@ -41,13 +41,13 @@ class Plugin:
     ) -> None:
         self._config = plugin_config
         self._student = _student(submission_metadata)
-        self._file = Path(os.path.abspath(submission_path or ""))  # None while otter builds an autograder
+        self._file = Path.cwd() / (submission_path or "")  # none while otter builds an autograder
         self._source = self._file.parent.parent / "source" / "files"
         self._folder = tempfile.TemporaryDirectory(prefix="radiokit-otter-")
         self._report = ""
 
     def before_grading(self, config: Any) -> None:
-        """Put aside what was handed in but for the submission itself, and put the instructor's files there."""
+        """Put aside what was handed in beside the submission; put the instructor's files there."""
         place = self._file.parent
         for name in sorted({each.name for each in place.iterdir()} - {TESTS, self._file.name}):
             self._put_aside(name)
