@@ -14,7 +14,6 @@ import radiokit as rk
 from radiokit.faces.grading import Finding, load_assignment, student_rng
 from radiokit.faces.grading.evidence import guesses
 from radiokit.faces.grading.here import Here
-from radiokit.faces.grading.russian import in_russian
 
 
 def found(work: str, part: str, code: str, language: str = "en") -> Finding:
@@ -210,19 +209,6 @@ def test_two_slips_at_once_are_said_in_words() -> None:
     told = found("shading", "unbiased", f"{FURNACE} a * 0.8 / np.pi**2 * c{MEAN}")
     assert " + " not in told.diagnosis or "fit two mistakes" in told.text
     assert guesses(["this"], "ru") == "возможно: this"
-
-
-def test_what_a_function_did_instead_is_said_in_russian() -> None:
-    for error, russian in {
-        "returned None: is a return statement missing?": "вернулось None: не забыт ли return?",
-        "returned dict that is no array of numbers": "вернулся тип dict, а нужен массив чисел",
-        "raised NameError: name 'pi' is not defined": "ошибка NameError: name 'pi' is not defined",
-        "took longer than 10 s": "работа длилась дольше 10 с",
-        "something else": "something else",
-    }.items():
-        assert in_russian(error) == russian
-    told = found("radiometry", "ordinary", "cone_solid_angle(a): print(a)", "ru")
-    assert told.text == "cone_solid_angle: вернулось None: не забыт ли return?"
 
 
 NOTEBOOK = """

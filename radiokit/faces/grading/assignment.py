@@ -45,7 +45,7 @@ class Assignment:
     Raises
     ------
     ParameterError
-        When a name is no identifier, a text is missing, or two questions ask for one function.
+        When a name is no identifier, a text is missing, or a function is asked for twice.
     """
 
     name: str
@@ -59,9 +59,9 @@ class Assignment:
             raise ParameterError("name", self.name, "an identifier")
         words("title", self.title)
         words("intro", self.intro)
-        names = [question.name for question in self.questions]
+        names = [name for question in self.questions for name in question.functions]
         if not names or len(set(names)) != len(names):
-            raise ParameterError("questions", names, "at least one question, each for a function of its own")
+            raise ParameterError("questions", names, "at least one question, each for functions of its own")
 
     @property
     def points(self) -> float:
@@ -77,9 +77,10 @@ class Assignment:
             When none does.
         """
         for question in self.questions:
-            if question.name == name:
+            if name in question.functions:
                 return question
-        raise UnknownNameError("question", name, [question.name for question in self.questions])
+        also = [each for question in self.questions for each in question.functions]
+        raise UnknownNameError("question", name, [question.name for question in self.questions], also)
 
 
 def student_rng(

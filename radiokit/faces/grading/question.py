@@ -45,6 +45,8 @@ class Part:
     visibility : str
         ``"visible"``: the student sees it at once, right values included; ``"hidden"``, ``"after_due_date"``,
         ``"after_published"``: never, or later.
+    function : str
+        Which of the question's functions is judged; its own by default.
     title : mapping, optional
         ``{"en": ..., "ru": ...}``; the usual names have one.
 
@@ -58,6 +60,7 @@ class Part:
     judge: Judge
     weight: float = 1.0
     visibility: Visibility = "visible"
+    function: str = ""
     title: Words = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -72,7 +75,7 @@ class Part:
 
 @dataclass(frozen=True, kw_only=True)
 class Question:
-    """One question: a function that the student writes.
+    """One question: a function that the student writes, and what he is to write beside it.
 
     Parameters
     ----------
@@ -83,6 +86,9 @@ class Question:
     title, text : mapping
         ``{"en": ..., "ru": ...}``, the text in Markdown with LaTeX.
     parts : tuple of Part
+    also : tuple of str
+        The signatures of further functions that it asks for, such as ``"cosine_pdf(directions)"`` beside
+        ``"cosine_sample(u)"``. A judge finds them with ``callee.other(name)``; a part may be on one of them.
     hints : mapping
         Further sentences ``{"en": ..., "ru": ...}`` by the misconception that they answer.
     seconds : float
@@ -91,7 +97,8 @@ class Question:
     Raises
     ------
     ParameterError
-        When an argument is out of its range, or two parts have one name.
+        When an argument is out of its range, two parts or functions have one name, or a part is on a function
+        that is not asked for.
 
     Examples
     --------
@@ -106,8 +113,8 @@ class Question:
     ...     text=both,
     ...     parts=(Part(name="ordinary", judge=judge),),
     ... )
-    >>> square.name, square.parameters
-    ('square', ('x',))
+    >>> square.name, square.functions
+    ('square', {'square': ('x',)})
     """
 
     signature: str
@@ -115,11 +122,15 @@ class Question:
     title: Words
     text: Words
     parts: tuple[Part, ...]
+    also: tuple[str, ...] = ()
     hints: Mapping[str, Words] = field(default_factory=dict)
     seconds: float = 10.0
 
     def __post_init__(self) -> None:
-        _function(self.signature)
+        if isinstance(self.also, str):
+            raise ParameterError("also", self.also, "a tuple of signatures")
+        if len(self.functions) != 1 + len(self.also):
+            raise ParameterError("also", self.also, "signatures, each of a name of its own")
         for name in ("points", "seconds"):
             value = getattr(self, name)
             if not isinstance(value, int | float) or not 0 < value < math.inf:
@@ -131,6 +142,9 @@ class Question:
         names = [part.name for part in self.parts]
         if not names or len(set(names)) != len(names):
             raise ParameterError("parts", names, "at least one part, each of a name of its own")
+        for part in self.parts:
+            if self.judged(part) not in self.functions:
+                raise ParameterError("function", part.function, f"among {', '.join(self.functions)}")
 
     @property
     def name(self) -> str:
@@ -140,8 +154,22 @@ class Question:
     @property
     def parameters(self) -> tuple[str, ...]:
         """The names of its parameters, in order."""
-        arguments = _function(self.signature).args
-        return tuple(each.arg for each in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs))
+        return self.functions[self.name]
+
+    @property
+    def functions(self) -> Mapping[str, tuple[str, ...]]:
+        """The parameters of each function that it asks for by that function's name, its own first."""
+        found = [_function(signature) for signature in (self.signature, *self.also)]
+        return {
+            each.name: tuple(
+                one.arg for one in (*each.args.posonlyargs, *each.args.args, *each.args.kwonlyargs)
+            )
+            for each in found
+        }
+
+    def judged(self, part: Part) -> str:
+        """Return the name of the function that a part is on."""
+        return part.function or self.name
 
     def worth(self, part: Part) -> float:
         """Return how many of the points a part is worth."""

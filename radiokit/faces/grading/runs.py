@@ -13,8 +13,8 @@ import numpy as np
 from radiokit.faces.grading.finding import Callee, Finding
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.result import Result
+from radiokit.faces.grading.russian import did
 from radiokit.faces.grading.samplewords import line, slip, tell
-from radiokit.faces.grading.words import say
 
 __all__ = ["FLOOR", "Runs", "UnusableError", "gather"]
 
@@ -176,8 +176,7 @@ def _pair(callee: Callee, result: Result, inputs: Mapping[str, Any], language: s
     if not result.ok and not result.raised and "are wanted" in result.error:
         raise UnusableError(Finding(share=0.0, text=pair))
     if not result.ok:
-        text = say(language, "call", function=callee.name, error=result.error)
-        raise UnusableError(Finding(share=0.0, text=text))
+        raise UnusableError(Finding(share=0.0, text=did(language, callee.name, result.error)))
     numbers = [array for array in result.values if array.size == 1 and array.dtype.kind != "c"]
     if len(numbers) != 2 or len(result.values) != 2:
         raise UnusableError(Finding(share=0.0, text=pair))

@@ -15,9 +15,11 @@ from radiokit.faces.diagnosis.result import Diagnosis
 from radiokit.faces.grading.arguments import argument_mistakes
 from radiokit.faces.grading.asking import asked, close, fitted, is_extreme, is_right, out_of_range
 from radiokit.faces.grading.evidence import at, clause, guesses, hint_for, joined, rows, wrong_at
+from radiokit.faces.grading.exact import Reference, as_function, no_inputs
 from radiokit.faces.grading.finding import Callee, Finding
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.result import Result
+from radiokit.faces.grading.russian import did
 from radiokit.faces.grading.words import say, sentence
 from radiokit.facts.errors import ParameterError
 
@@ -49,11 +51,12 @@ class Values:
 
     Parameters
     ----------
-    inputs : callable
+    reference : callable, Case or array_like
+        ``reference(**inputs)`` gives what is right, an array of one number or vector for each input; or a
+        closed-form case, whose exact value is right; or what is right itself.
+    inputs : callable, optional
         From a generator to the inputs by name, arrays whose first axes agree, or numbers, in the order of
-        the function's parameters.
-    reference : callable
-        ``reference(**inputs)`` gives what is right, an array of one number or vector for each input.
+        the function's parameters. Without it the function has none, and one number is asked for.
     rtol : float
         The relative error that is allowed, in [0, 1).
     ulps : float
@@ -77,10 +80,14 @@ class Values:
     ------
     ParameterError
         When a number is out of its range.
+
+    >>> import radiokit as rk
+    >>> Values(reference=rk.case("lambert-under-square-of-2m")).rtol
+    1e-09
     """
 
-    inputs: Callable[[np.random.Generator], Mapping[str, Any]]
-    reference: Callable[..., Any]
+    reference: Reference
+    inputs: Callable[[np.random.Generator], Mapping[str, Any]] = no_inputs
     rtol: float = 1e-9
     ulps: float = 0.0
     atol: float = 0.0
@@ -91,6 +98,7 @@ class Values:
     terms: Callable[..., Any] | None = None
 
     def __post_init__(self) -> None:
+        as_function(self.reference)
         if not 0 <= self.rtol < 1:
             raise ParameterError("rtol", self.rtol, "in [0, 1)")
         for name in ("ulps", "atol"):
@@ -122,7 +130,7 @@ class Values:
         shown: bool,
     ) -> Finding:
         given = {name: np.asarray(value) for name, value in self.inputs(rng).items()}
-        right = np.atleast_1d(np.asarray(self.reference(**given), dtype=float))
+        right = np.atleast_1d(np.asarray(self._right(**given), dtype=float))
         seed = int(rng.integers(1 << 32))
         allowed = self._allowed(right, self.rtol)
         first, mode = asked(callee, given, right, seed, allowed)
@@ -144,6 +152,10 @@ class Values:
         if mode == "batch":
             return Finding(share=1.0, text=say(language, "full"))
         return Finding(share=1.0, text=say(language, "full-one-by-one"))
+
+    @property
+    def _right(self) -> Callable[..., Any]:
+        return as_function(self.reference)
 
     def _allowed(self, right: Array, rtol: float) -> Array:
         size = np.abs(right)
@@ -243,10 +255,10 @@ class Values:
         every = {**given, **context}
         columns = {name: value for name, value in every.items() if _is_column(name, value, size)}
         others = {name: np.asarray(variant(**given), dtype=float) for name, variant in self.variants.items()}
-        usual = (*CATALOGUE, *argument_mistakes(self.reference, given, right))
+        usual = (*CATALOGUE, *argument_mistakes(self._right, given, right))
 
         def reference(**inputs: Any) -> Any:
-            return self.reference(**{name: inputs.get(name, given[name]) for name in given})
+            return self._right(**{name: inputs.get(name, given[name]) for name in given})
 
         found: Diagnosis | None = None
         rtol = min(max(self.rtol, 2e-5 if answer.dtype == np.float32 else 1e-6), 0.1)
@@ -274,7 +286,7 @@ class Values:
             variants={name: values[lit] for name, values in others.items()},
             language=language,
             rtol=rtol,
-            catalogue=(*CATALOGUE, *argument_mistakes(self.reference, lit_given, right[lit])),
+            catalogue=(*CATALOGUE, *argument_mistakes(self._right, lit_given, right[lit])),
         )
         return partly if partly.suspicions else found
 
@@ -287,7 +299,7 @@ def _raised(
     hints: Mapping[str, Mapping[str, str]],
 ) -> Finding:
     """Say what a function did instead of answering, and why if its inputs leave the range of numbers."""
-    text = say(language, "call", function=name, error=result.error)
+    text = did(language, name, result.error)
     if result.raised in ("OverflowError", "ZeroDivisionError") and any(map(is_extreme, given.values())):
         hint = hints.get("out-of-range", {}).get(language, "")
         text = f"{text}. {sentence(hint)}" if hint else text

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import Any
 
 from radiokit.faces.diagnosis.misconception import LANGUAGES
-from radiokit.faces.grading.russian import in_russian, place_in_russian
 from radiokit.facts.errors import ParameterError
 
 __all__ = ["SENTENCES", "Words", "checked_language", "say", "sentence", "words"]
@@ -77,6 +76,10 @@ SENTENCES: Mapping[str, Words] = {
         "en": "returns an array of shape {shape} where {expected} is right",
         "ru": "возвращает массив формы {shape}, а нужна форма {expected}",
     },
+    "one-number": {
+        "en": "returns an array of shape {shape} where one number is right",
+        "ru": "возвращает массив формы {shape}, а нужно одно число",
+    },
     "complex": {
         "en": "returns complex numbers, and real ones are asked for",
         "ru": "возвращает комплексные числа, а нужны вещественные",
@@ -95,6 +98,8 @@ SENTENCES: Mapping[str, Words] = {
         "ru": "при {inputs} получено {value}",
     },
     "such-as": {"en": "such as {inputs}", "ru": "например при {inputs}"},
+    "number-shown": {"en": "it gives {value}, right is {right}", "ru": "получено {value}, верно {right}"},
+    "number-hidden": {"en": "it gives {value}", "ru": "получено {value}"},
     "number": {"en": "input no. {row}", "ru": "наборе данных № {row}"},
     "both": {
         "en": "your numbers fit two mistakes at once: {names}",
@@ -153,9 +158,6 @@ def say(language: str, key: str, **values: Any) -> str:
     """
     if "count" in values:
         values.setdefault("noun", _noun(language, values["count"]))
-    if language == "ru":
-        values |= {name: in_russian(values[name]) for name in ("error", "message") if name in values}
-        values |= {name: place_in_russian(values[name]) for name in ("where",) if name in values}
     return SENTENCES[key][language].format(**values)
 
 
