@@ -128,7 +128,7 @@ ENTRIES: tuple[Misconception, ...] = (
     ),
     varying(
         "distance-doubled",
-        lambda distance: {"/(d*2)": distance / 2, "/d*2": 2 * distance},
+        lambda distance: {"1/2": distance / 2, "2": 2 * distance},
         "You have twice the distance where its square belongs: it is d**2, not d*2.",
         "У вас удвоенное расстояние вместо его квадрата: нужно d**2, а не d*2.",
         needs=("distance",),
