@@ -50,6 +50,7 @@ def grade(
     from radiokit.faces.grading.formats.writing import FORMATS, json_text, output, write_file
     from radiokit.faces.grading.grader import grade as graded
     from radiokit.faces.grading.record import continued, mark_of, record
+    from radiokit.faces.grading.rehearsal import rehearse
     from radiokit.faces.grading.unfinished import nothing_yet, with_pending
     from radiokit.faces.grading.words import checked_language
 
@@ -59,6 +60,8 @@ def grade(
         raise ParameterError("student", student, "of printable letters")
     source, name = assignment_source(assignment)
     work = assignment_from_source(source, name)
+    if Path(assignment).suffix == ".py":
+        rehearse(work)
     if submission.suffix not in (".py", ".ipynb"):
         raise ParameterError("submission", str(submission), "a script (.py) or a notebook (.ipynb)")
     if not submission.is_file():

@@ -13,6 +13,7 @@ from radiokit.faces.diagnosis.catalogue import CATALOGUE
 from radiokit.faces.diagnosis.diagnose import diagnose
 from radiokit.faces.diagnosis.result import Suspicion
 from radiokit.faces.grading.finding import Callee, Finding
+from radiokit.faces.grading.given import check_functions, check_shares, number, own
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.runs import FLOOR, Runs, UnusableError, gather
 from radiokit.faces.grading.runtests import (
@@ -125,8 +126,9 @@ class Estimator:
             value = getattr(self, name)
             if type(value) is not int or value < least:
                 raise ParameterError(name, value, f"an integer of at least {least}")
-        if not all(0 <= share <= 1 for share in self.credit.values()):
-            raise ParameterError("credit", self.credit, "shares in [0, 1]")
+        functions = ("inputs", "reference", "context", "budget", "uniform")
+        check_functions({name: getattr(self, name) for name in functions}, self.variants)
+        check_shares("credit", self.credit)
         if self.aspect == "efficiency" and (self.budget is None or self.uniform is None):
             raise ParameterError("budget, uniform", None, "variances, where efficiency is judged")
         for name in ("noise", "slowest"):
@@ -190,7 +192,8 @@ class Estimator:
 
     def _given(self, function: Callable[..., float] | None, runs: Runs) -> Array:
         assert function is not None
-        return np.array([float(function(**inputs)) for inputs in runs.inputs])
+        what = "budget" if function is self.budget else "uniform"
+        return np.array([number(function, inputs, what) for inputs in runs.inputs])
 
     def _right(self, runs: Runs, language: str, measured: dict[str, float]) -> Finding:
         if self.aspect == "efficiency":
@@ -288,20 +291,25 @@ class Estimator:
         """Yield what explains the means: first among this question's variants, then in the catalogue."""
         known = _numbers(runs, self.context)
         others = {
-            name: np.array([float(variant(**inputs)) for inputs in runs.inputs])
+            name: np.array([number(variant, inputs, f"variants[{name!r}]") for inputs in runs.inputs])
             for name, variant in self.variants.items()
         }
         error = WIDER * np.sqrt(runs.variances / runs.values.shape[1]) + runs.floor / 10
 
         def reference(**changed: Any) -> Array:
-            return np.array(
-                [
-                    float(
-                        self.reference(**{n: changed[n][k] if n in changed else v for n, v in inputs.items()})
-                    )
-                    for k, inputs in enumerate(runs.inputs)
-                ]
-            )
+            try:  # out of its domain it may do anything, which then explains nothing
+                return np.array(
+                    [
+                        float(
+                            self.reference(
+                                **{n: changed[n][k] if n in changed else v for n, v in each.items()}
+                            )
+                        )
+                        for k, each in enumerate(runs.inputs)
+                    ]
+                )
+            except Exception:
+                return np.full(len(runs.inputs), math.nan)
 
         for variants, catalogue in ((others, ()), (reference, CATALOGUE)):
             if variants:
@@ -321,7 +329,7 @@ class Estimator:
 def _numbers(runs: Runs, context: Callable[..., Mapping[str, Any]] | None) -> dict[str, Array]:
     """Return the inputs that are numbers, one for each group, with those of the context."""
     rows = [
-        {**inputs, **(context(**inputs) if context is not None else {}), "samples": count}
+        {**inputs, **(own("context", context, **inputs) if context is not None else {}), "samples": count}
         for inputs, count in zip(runs.inputs, runs.samples, strict=True)
     ]
     names = [name for name, value in rows[0].items() if np.ndim(value) == 0]

@@ -65,9 +65,15 @@ class Part:
             raise ParameterError("weight", self.weight, "a finite number above 0")
         if self.visibility not in get_args(Visibility):
             raise ParameterError("visibility", self.visibility, ", ".join(get_args(Visibility)))
-        if not callable(getattr(self.judge, "judge", None)):
+        if isinstance(self.judge, type) or not callable(getattr(self.judge, "judge", None)):
             raise ParameterError("judge", self.judge, "an object with a method judge, such as Values(...)")
-        object.__setattr__(self, "title", words("title", self.title or PARTS.get(self.name, {})))
+        if not isinstance(self.name, str) or not self.name:
+            raise ParameterError("name", self.name, "a text")
+        usual = f'texts {{"en": ..., "ru": ...}}; only these names have one: {", ".join(PARTS)}'
+        if not self.title and self.name not in PARTS:
+            raise ParameterError(f"title of part {self.name}", self.title, usual)
+        title = words(f"title of part {self.name}", self.title or PARTS[self.name])
+        object.__setattr__(self, "title", title)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,14 +83,16 @@ class Question:
     Parameters
     ----------
     signature : str
-        Such as ``"solid_angle(half_angle)"``; the function's name is the question's.
+        Such as ``"solid_angle(half_angle)"``; the function's name is the question's. Its parameters are the
+        judges' inputs, by the same names and in the same order. Defaults and annotations may stand in it.
     points : float
         Above 0; shared by the parts by their weights.
     title, text : mapping
         ``{"en": ..., "ru": ...}``, the text in Markdown with LaTeX.
     parts : tuple of Part
     hints : mapping
-        Further sentences ``{"en": ..., "ru": ...}`` by the misconception that they answer.
+        Further sentences ``{"en": ..., "ru": ...}`` by the misconception that they answer, one of
+        ``rk.list_misconceptions()`` or of a judge's ``variants``.
     seconds : float
         Wall time for all calls of one part together [s], above 0.
 
@@ -119,18 +127,28 @@ class Question:
     seconds: float = 10.0
 
     def __post_init__(self) -> None:
-        _function(self.signature)
+        arguments = _function(self.signature).args
+        if arguments.vararg or arguments.kwarg:
+            raise ParameterError(
+                "signature", self.signature, "without * and **: inputs are handed over by place"
+            )
         for name in ("points", "seconds"):
             value = getattr(self, name)
             if not isinstance(value, int | float) or not 0 < value < math.inf:
-                raise ParameterError(name, value, "a finite number above 0")
-        words("title", self.title)
-        words("text", self.text)
-        for name, hint in self.hints.items():
-            words(f"hints[{name!r}]", hint)
+                raise ParameterError(f"{self.name}: {name}", value, "a finite number above 0")
+        words(f"{self.name}: title", self.title)
+        words(f"{self.name}: text", self.text)
+        if not isinstance(self.hints, Mapping):
+            raise ParameterError(f"{self.name}: hints", self.hints, "texts by misconception")
+        for hint, said in self.hints.items():
+            words(f"{self.name}: hints[{hint!r}]", said)
+        if not isinstance(self.parts, tuple | list) or not all(isinstance(part, Part) for part in self.parts):
+            allowed = "a tuple of rk.grading.Part(name=..., judge=...); one alone is (Part(...),)"
+            raise ParameterError(f"{self.name}: parts", self.parts, allowed)
         names = [part.name for part in self.parts]
         if not names or len(set(names)) != len(names):
-            raise ParameterError("parts", names, "at least one part, each of a name of its own")
+            raise ParameterError(f"{self.name}: parts", names, "at least one part, each of a name of its own")
+        object.__setattr__(self, "parts", tuple(self.parts))
 
     @property
     def name(self) -> str:
@@ -142,6 +160,13 @@ class Question:
         """The names of its parameters, in order."""
         arguments = _function(self.signature).args
         return tuple(each.arg for each in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs))
+
+    @property
+    def needed(self) -> int:
+        """How many parameters have no default value."""
+        arguments = _function(self.signature).args
+        given = len(arguments.posonlyargs) + len(arguments.args) - len(arguments.defaults)
+        return given + sum(each is None for each in arguments.kw_defaults)
 
     def worth(self, part: Part) -> float:
         """Return how many of the points a part is worth."""

@@ -22,6 +22,7 @@ from radiokit.faces.grading.classroom.task import Done, Order, Task, assignment_
 from radiokit.faces.grading.formats.writing import json_text
 from radiokit.faces.grading.grades import Grade
 from radiokit.faces.grading.limits import Limits
+from radiokit.faces.grading.rehearsal import rehearse
 from radiokit.faces.grading.unfinished import no_submission
 from radiokit.faces.grading.words import checked_language
 from radiokit.faces.workers import available_workers
@@ -131,6 +132,8 @@ def grade_class(
     source, file = assignment_source(assignment)
     order = Order(source, file, secret, checked_language(language), limits, code_digest())
     work = assignment_of(order)
+    if Path(assignment).suffix == ".py":
+        rehearse(work)
     students = None if roster is None else read_roster(roster)
     ignored = [Path(each) for each in (out, roster) if each is not None]
     entries = discover(folder, roster=students, ignore=ignored)

@@ -40,11 +40,12 @@ def assignment(
 ) -> None:
     """List the assignments, show one, or write what students and instructors hold."""
     from radiokit.faces.grading.assignment import list_assignments, load_assignment
+    from radiokit.faces.grading.rehearsal import rehearsed
 
     if name is None:
         _list([load_assignment(each) for each in list_assignments()], json)
     elif not any((to, otter, nbgrader, gradescope, github)):
-        _show(load_assignment(name), (language or ["en"])[0], json)
+        _show(rehearsed(name), (language or ["en"])[0], json)
     else:
         written: list[Path] = []
         if to or otter or nbgrader:
