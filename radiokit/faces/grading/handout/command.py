@@ -7,8 +7,8 @@ from typing import Annotated, Any
 
 import typer
 
-from radiokit.faces.console import show_json, show_table, write
-from radiokit.facts.errors import TargetError
+from radiokit.faces.console import progress_bar, show_json, show_table, write
+from radiokit.facts.errors import ParameterError, TargetError
 
 __all__ = ["assignment"]
 
@@ -35,15 +35,27 @@ def assignment(
         Path | None,
         typer.Option(help="File with the secret that the autograder takes along; else it makes one."),
     ] = None,
+    check: Annotated[
+        bool,
+        typer.Option("--check", help="Try it before the class does; with --solution, that earns full marks."),
+    ] = False,
+    students: Annotated[int, typer.Option(min=1, help="With --check: for how many students' inputs.")] = 12,
     force: Annotated[bool, typer.Option("--force", help="Write over files that differ.")] = False,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """List the assignments, show one, or write what students and instructors hold."""
+    """List the assignments, show one, check one, or write what students and instructors hold.
+
+    Exit codes: 0 done, 1 mistakes found by --check, 2 bad usage or input.
+    """
     from radiokit.faces.grading.assignment import list_assignments, load_assignment
     from radiokit.faces.grading.rehearsal import rehearsed
 
     if name is None:
+        if check or any((to, otter, nbgrader, gradescope, github, solution)):
+            raise ParameterError("name", None, f"one of {', '.join(list_assignments())}, or FILE.py")
         _list([load_assignment(each) for each in list_assignments()], json)
+    elif check:
+        _check(name, solution, students, secret_file, json)
     elif not any((to, otter, nbgrader, gradescope, github)):
         _show(rehearsed(name), (language or ["en"])[0], json)
     else:
@@ -94,6 +106,28 @@ def _systems(
         github.write_text(text, encoding="utf-8")
         written.append(github)
     return written
+
+
+def _check(name: str, solution: Path | None, students: int, secret_file: Path | None, json: bool) -> None:
+    """Show what is wrong with an assignment; exit code 1 if anything is."""
+    from radiokit.faces.grading.checkup import check_assignment
+    from radiokit.faces.grading.command import read_secret
+
+    with progress_bar("checking", not json) as progress:
+        found = check_assignment(
+            name,
+            solution=solution,
+            students=students,
+            secret=read_secret(secret_file),
+            workers=None,
+            progress=progress,
+        )
+    if json:
+        show_json(found.to_json())
+    else:
+        write(str(found))
+    if not found.ok:
+        raise typer.Exit(1)
 
 
 def _list(found: list[Any], json: bool) -> None:
