@@ -70,7 +70,12 @@ class Assignment:
             isinstance(question, Question) for question in self.questions
         ):
             allowed = "a tuple of rk.grading.Question(...); one alone is (Question(...),)"
-            raise ParameterError("questions", self.questions, allowed)
+            kinds = (
+                [type(each).__name__ for each in self.questions]
+                if isinstance(self.questions, tuple | list)
+                else None
+            )
+            raise ParameterError("questions", kinds or type(self.questions).__name__, allowed)
         names = [question.name for question in self.questions]
         if not names or len(set(names)) != len(names):
             raise ParameterError("questions", names, "at least one question, each for a function of its own")
@@ -195,7 +200,7 @@ def assignment_from_source(source: str, file: str = "assignment.py") -> Assignme
 
 def _told(error: BaseException, file: str) -> str:
     """Return in one line what an assignment's file did instead of running, where, and what would be right."""
-    where, said = line_of(error), " ".join(str(error).split())
+    where, said = line_of(error), " ".join(str(error).split()).replace(".__init__()", "(...)")
     if isinstance(error, SyntaxError):
         where, said = f" ({file}, line {error.lineno})", error.msg
     at = where.strip(" ()") or file

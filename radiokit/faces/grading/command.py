@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from radiokit.faces.console import progress_bar, show_json, write
+from radiokit.faces.console import fail, progress_bar, show_json, write
 from radiokit.faces.grading.grades import Grade
 from radiokit.facts.errors import ParameterError, TargetError
 
@@ -97,6 +97,9 @@ def grade(
         console.print(to_rich(result, reveal=reveal))
     else:
         write(to_text(result, reveal=reveal).rstrip("\n"))
+    for question in result.questions:
+        if question.review:
+            fail(f"{question.name} needs a person: {question.review}")
     code = exit_code(result)
     if code:
         raise typer.Exit(code)

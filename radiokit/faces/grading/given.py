@@ -164,8 +164,8 @@ def shown(value: Any) -> str:
     if isinstance(value, np.ndarray) and value.ndim and value.size > 3:
         return f"an array of shape {value.shape}"
     text = np.array2string(value, precision=6) if isinstance(value, np.ndarray) else repr(value)
-    if isinstance(value, int | float | np.generic):
-        text = str(value)
+    if isinstance(value, float | np.floating) or (isinstance(value, np.ndarray) and not value.ndim):
+        text = f"{value:.6g}"
     text = " ".join(text.split())
     return text if len(text) <= 60 else f"{text[:59]}…"
 

@@ -194,10 +194,11 @@ def _graded(question: Question, found: Mapping[str, Finding], review: str, langu
 def _problems(loaded: Result, language: str) -> tuple[str, ...]:
     if not loaded.ok:
         return (say(language, "not-loaded", error=loaded.error),)
-    return tuple(
+    told = (
         say(language, "problem" if each["raised"] else "remark", **each)
         for each in loaded.facts.get("problems", ())
     )
+    return tuple(each.removeprefix(":").strip() for each in told)  # of a whole file there is no place
 
 
 def _absent(

@@ -19,7 +19,7 @@ from radiokit.faces.grading.here import Here
 from radiokit.faces.grading.protocol import plain_text
 from radiokit.faces.grading.question import Question
 from radiokit.faces.grading.words import checked_language, say
-from radiokit.facts.errors import CallableError, TargetError
+from radiokit.facts.errors import AssignmentError, CallableError, TargetError
 
 __all__ = ["Check", "Checked", "practice"]
 
@@ -122,6 +122,9 @@ class Check:
                 )
             except (CallableError, TargetError) as error:
                 finding = Finding(share=0.0, text=plain_text(error))
+            except AssignmentError as error:
+                text = f"{say(self._language, 'assignment-failed')} ({plain_text(error)})"
+                finding = Finding(share=0.0, text=text)
             except Exception as error:  # as in the grader: no answer may break the judges
                 problem = plain_text(f"{type(error).__name__}: {error}")
                 finding = Finding(share=0.0, text=say(self._language, "judge-failed", error=problem))

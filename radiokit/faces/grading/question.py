@@ -144,7 +144,10 @@ class Question:
             words(f"{self.name}: hints[{hint!r}]", said)
         if not isinstance(self.parts, tuple | list) or not all(isinstance(part, Part) for part in self.parts):
             allowed = "a tuple of rk.grading.Part(name=..., judge=...); one alone is (Part(...),)"
-            raise ParameterError(f"{self.name}: parts", self.parts, allowed)
+            kinds = (
+                [type(each).__name__ for each in self.parts] if isinstance(self.parts, tuple | list) else None
+            )
+            raise ParameterError(f"{self.name}: parts", kinds or type(self.parts).__name__, allowed)
         names = [part.name for part in self.parts]
         if not names or len(set(names)) != len(names):
             raise ParameterError(f"{self.name}: parts", names, "at least one part, each of a name of its own")

@@ -106,13 +106,16 @@ def _values(judge: Values, question: Question, rng: np.random.Generator) -> None
 
 
 def _estimator(judge: Estimator, question: Question, rng: np.random.Generator) -> None:
-    given, right = exact(judge.inputs, judge.reference, rng)
+    state = rng.bit_generator.state
+    given = drawn(judge.inputs, rng, rows=False)
     _named(question, list(given), after=question.parameters[len(given) :][:2])
     if len(question.parameters) != len(given) + 2 or question.parameters[-2:] == ("seed", "samples"):
         wanted = ", ".join([*given, "samples", "seed"])
         raise AssignmentError(
             f"signature = {question.signature!r} is not allowed: it must be {question.name}({wanted})"
         )
+    rng.bit_generator.state = state
+    given, right = exact(judge.inputs, judge.reference, rng)
     _steady(judge.reference, given, np.array([right]))
     for name, variant in judge.variants.items():
         number(variant, given, f"variants[{name!r}]")
@@ -135,6 +138,11 @@ def _sampler(judge: Sampler, question: Question, rng: np.random.Generator) -> No
 
 
 def _laws(judge: Laws, question: Question, rng: np.random.Generator) -> None:
+    if len(question.parameters) < 2:
+        raise AssignmentError(
+            f"signature = {question.signature!r} is not allowed: it must be {question.name}(wi, wo), or with "
+            "further parameters"
+        )
     wi, wo = DIRECTIONS, DIRECTIONS[::-1]
     for given in judge.chosen(rng):
         _named(question, list(given), before=question.parameters[:2], ordered=False)
@@ -185,9 +193,9 @@ def _steady(reference: Callable[..., Any], given: Mapping[str, Array], right: Ar
     """Check that a reference says the same again."""
     again = np.atleast_1d(numbers(own("reference", reference, **given), "reference"))
     if again.shape != right.shape or not np.array_equal(again, right):
+        now, before = float(again.flat[0]), float(right.flat[0])
         raise AssignmentError(
-            f"reference gives {shown(again.flat[0])} for inputs for which it gave {shown(right.flat[0])}: it "
-            "must depend on them alone"
+            f"reference gives {now!r} for inputs for which it gave {before!r}: it must depend on them alone"
         )
 
 

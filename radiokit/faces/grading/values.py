@@ -300,4 +300,5 @@ def _raised(
 
 def _is_column(name: str, value: Any, size: int) -> bool:
     """Return whether the diagnosis can take an input."""
-    return np.shape(value) in ((), (size,)) or (name in ("wi", "wo") and np.shape(value) == (size, 3))
+    fits = np.shape(value) in ((), (size,)) or (name in ("wi", "wo") and np.shape(value) == (size, 3))
+    return fits and bool(np.isfinite(value).all())

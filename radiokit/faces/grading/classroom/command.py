@@ -97,6 +97,7 @@ def _show(found: Any) -> None:
     write(
         f"{summary['entries']} entries: {summary['handed_in']} handed in, {missing} not, "
         f"{summary['need_review']} for a person to look at"
+        + (f": {found.folder / 'class.csv'} says why" if summary["need_review"] else "")
     )
     if found.graded:
         by = f"{found.workers} workers" if found.workers > 1 else "1 worker" if found.workers else "a cluster"

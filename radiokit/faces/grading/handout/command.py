@@ -112,6 +112,7 @@ def _check(name: str, solution: Path | None, students: int, secret_file: Path | 
     """Show what is wrong with an assignment; exit code 1 if anything is."""
     from radiokit.faces.grading.checkup import check_assignment
     from radiokit.faces.grading.command import read_secret
+    from radiokit.faces.workers import available_workers
 
     with progress_bar("checking", not json) as progress:
         found = check_assignment(
@@ -119,7 +120,7 @@ def _check(name: str, solution: Path | None, students: int, secret_file: Path | 
             solution=solution,
             students=students,
             secret=read_secret(secret_file),
-            workers=None,
+            workers=available_workers(),
             progress=progress,
         )
     if json:
