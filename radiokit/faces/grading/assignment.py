@@ -183,7 +183,7 @@ def assignment_from_source(source: str, file: str = "assignment.py") -> Assignme
     """
     name = f"_assignment_{hashlib.sha256(source.encode()).hexdigest()[:16]}"
     module = ModuleType(name)
-    module.__file__ = file
+    module.__file__, module.__package__ = file, ""  # so that a relative import says what it lacks
     sys.modules[name] = module  # where its own dataclasses look for their module
     try:
         with contextlib.redirect_stdout(io.StringIO()):  # what is printed is the grade alone
