@@ -224,6 +224,7 @@ def test_a_judge_of_ones_own_says_what_it_finds_and_may_be_rehearsed():
         ("assignment", "light.py"),
         ("assignment", "light.py", "--to", "copies"),
         ("assignment", "light.py", "--gradescope", "auto.zip"),
+        ("assignment", "light.py", "--github", "classroom.yml"),
         ("grade", "work.py", "--assignment", "light.py"),
         ("grade-class", "class", "--assignment", "light.py", "--out", "out"),
     ],
@@ -280,6 +281,16 @@ def test_a_reference_that_refuses_wrong_arguments_breaks_no_diagnosis(tmp_path):
     (tmp_path / "work.py").write_text(f"import numpy as np\ndef lamp(intensity, distance, theta): {LAMP} * 2")
     found = rk.grading.grade(work, tmp_path / "work.py", questions=["lamp"])["lamp"]
     assert (found.diagnosis, found.review) == ("doubled", "")
+
+
+def test_inputs_that_are_infinite_break_no_diagnosis(tmp_path):
+    text = changed(LAMP, LAMP.replace("distance**2", "np.minimum(distance, 9)**2"))
+    text = text.replace("    return {", "    distance[0] = np.inf\n    return {", 1)
+    (tmp_path / "work.py").write_text("def lamp(intensity, distance, theta): return intensity")
+    found = rk.grading.grade(
+        assignment_from_source(text, "light.py"), tmp_path / "work.py", questions=["lamp"]
+    )
+    assert (found["lamp"].score, found["lamp"].review) == (0, "")
 
 
 def test_what_is_printed_while_an_assignment_loads_is_not_among_the_grades(capsys):

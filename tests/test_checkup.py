@@ -60,6 +60,30 @@ def test_students_are_at_least_one():
         rk.grading.check_assignment("radiometry", students=0)
 
 
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--check", "--to", "copies"), "check = True is not allowed: it must be alone"),
+        (("--solution", "mine.py"), "solution = 'mine.py' is not allowed: it must be beside --check"),
+        (("--secret-file", "mine.txt"), "secret-file = 'mine.txt' is not allowed"),
+    ],
+)
+def test_options_that_do_nothing_are_refused(options, said, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["assignment", str(HOMEWORK), *options])
+    assert ended.value.code == 2
+    assert said in capsys.readouterr().err
+
+
+def test_a_file_is_suggested_where_its_suffix_is_forgotten(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "homework.py").write_text(HOMEWORK.read_text())
+    with pytest.raises(SystemExit) as ended:
+        main(["assignment", "homework"])
+    assert ended.value.code == 2
+    assert "did you mean 'homework.py'?" in capsys.readouterr().err
+
+
 def test_a_check_needs_a_name(capsys):
     with pytest.raises(SystemExit) as ended:
         main(["assignment", "--check"])

@@ -158,7 +158,8 @@ def assignment_source(target: str | Path) -> tuple[str, str]:
     path = Path(target)
     if path.suffix != ".py":
         if str(target) not in list_assignments():
-            raise UnknownNameError("assignment", str(target), list_assignments())
+            own = [f"{target}.py"] if Path(f"{target}.py").is_file() else []
+            raise UnknownNameError("assignment", str(target), list_assignments(), own)
         path = FOLDER / f"{target}.py"
     if not path.is_file():
         raise TargetError(f"no such file: {path}")

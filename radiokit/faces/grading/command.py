@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from radiokit.faces.console import fail, progress_bar, show_json, write
+from radiokit.faces.console import progress_bar, show_json, write
 from radiokit.faces.grading.grades import Grade
 from radiokit.facts.errors import ParameterError, TargetError
 
@@ -21,9 +21,13 @@ NOT_FULL, UNFINISHED = 1, 3
 
 
 def grade(
-    submission: Annotated[Path, typer.Argument(help="A script or a notebook.", metavar="SUBMISSION")],
-    assignment: Annotated[str, typer.Option(help="An assignment's name, or a file that sets ASSIGNMENT.")],
-    student: Annotated[str, typer.Option(help="Who; each student has inputs of his own.")] = "",
+    submission: Annotated[
+        Path, typer.Argument(help="A script (.py) or a notebook (.ipynb).", metavar="SUBMISSION")
+    ],
+    assignment: Annotated[
+        str, typer.Option(help="radiometry, brdfs, shading, or FILE.py that sets ASSIGNMENT.")
+    ],
+    student: Annotated[str, typer.Option(help="Who, in any words; each student has inputs of his own.")] = "",
     secret_file: Annotated[
         Path | None,
         typer.Option(help=f"File with the text that makes inputs unforeseeable; else ${SECRET} counts."),
@@ -38,10 +42,17 @@ def grade(
             "json of the same submission is continued.",
         ),
     ] = None,
-    reveal: Annotated[bool, typer.Option("--reveal", help="Tell what was found about hidden parts.")] = False,
+    reveal: Annotated[
+        bool,
+        typer.Option(
+            "--reveal", help="Tell what was found about hidden parts, and why a person should look."
+        ),
+    ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print JSON, which tells all.")] = False,
 ) -> None:
     """Grade a submission; its code runs in a sandbox.
+
+    For example: radiokit grade anna.ipynb --assignment radiometry --student anna --out anna.html
 
     Exit codes: 0 full marks, 1 not full marks, 2 bad usage or input, 3 incomplete or a person should look.
     """
@@ -97,9 +108,6 @@ def grade(
         console.print(to_rich(result, reveal=reveal))
     else:
         write(to_text(result, reveal=reveal).rstrip("\n"))
-    for question in result.questions:
-        if question.review:
-            fail(f"{question.name} needs a person: {question.review}")
     code = exit_code(result)
     if code:
         raise typer.Exit(code)
