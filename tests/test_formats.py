@@ -25,6 +25,7 @@ from radiokit.faces.grading.formats.text import to_rich
 from radiokit.faces.grading.formats.writing import FORMATS, output, write_file
 from radiokit.faces.grading.grades import Grade, PartGrade, QuestionGrade
 from radiokit.faces.grading.limits import PROTECTIONS
+from radiokit.faces.grading.protocol import plain_text
 from radiokit.faces.grading.record import grade_schema, record
 from radiokit.faces.grading.unfinished import nothing_yet, with_pending
 from radiokit.facts.errors import ParameterError
@@ -334,6 +335,45 @@ def test_no_cell_becomes_a_formula(start):
     (_, row) = rows_of(rk.grading.to_csv([grade]))
     assert row[0] == f"'{evil.strip()}"
     assert not [cell for cell in row if cell.lstrip().startswith(("=", "+", "-", "@"))]
+
+
+@pytest.mark.parametrize("evil", ['x;=CMD("a")', "x, @SUM(1)", 'x;" -2+3+A1', "x|+A1|A1", "＝1+1", "x; -A1"])
+def test_no_part_of_a_cell_becomes_a_formula_where_others_cut(evil):
+    (_, row) = rows_of(rk.grading.to_csv([replace(GRADE, problems=(evil,))]))
+    assert "'" in row[-1]
+    assert not [each for each in re.split(r"[;,|]", row[-1]) if each.strip(' "').startswith(tuple("=+-@＝"))]
+
+
+def test_numbers_in_a_cell_are_left():
+    told = "line 3 raised ValueError: (3, -4.5, +1e-3, -inf), x = -1; -2"
+    (_, row) = rows_of(rk.grading.to_csv([replace(GRADE, problems=(told,))]))
+    assert row[-1] == told
+
+
+COMMANDS = (
+    "::error::x",
+    "  ::set-output name=a::b",
+    "a ##[set-output name=result;]b",
+    "##vso[task.complete]",
+)
+
+
+@pytest.mark.parametrize("name", FORMATS)
+@pytest.mark.parametrize("evil", COMMANDS)
+def test_no_log_takes_a_line_for_a_command(name, evil):
+    """As GitHub's runner reads them: two colons at a line's beginning, ##[ anywhere; Azure's has ##vso[."""
+    assert re.search(r"^\s*::|##\w*\[", evil)
+    review = tuple(replace(each, review=evil) for each in GRADE.questions)
+    grade = replace(GRADE, problems=(plain_text(evil),), questions=review)
+    if name == "json":
+        grade = replace(grade, questions=GRADE.questions)
+    assert not re.search(r"^\s*::|##\w*\[", FORMATS[name](grade, True), re.MULTILINE)
+
+
+def test_markdown_notifies_nobody():
+    told = rk.grading.to_markdown(replace(GRADE, problems=("@team (@me) #12 owner/x#3 anna@uni.ru",)))
+    assert not re.search(r"(?<!\w)@\w|#\d", told)
+    assert "anna@uni.ru" in told
 
 
 def test_excel_gets_its_dialect():

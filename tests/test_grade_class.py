@@ -128,7 +128,7 @@ def test_what_must_not_be_followed_is_refused(tmp_path: Path, monkeypatch: pytes
     secret = tmp_path / "secret.py"
     secret.write_text("reference = 1")
     folder = tmp_path / "class"
-    for name in ("link", "loop", "pipe", "huge", "many"):
+    for name in ("link", "loop", "pipe", "huge", "many", "own"):
         (folder / name).mkdir(parents=True)
     (folder / "link/work.py").symlink_to(secret)
     (folder / "out.py").symlink_to(secret)
@@ -142,7 +142,10 @@ def test_what_must_not_be_followed_is_refused(tmp_path: Path, monkeypatch: pytes
         (folder / f"many/{number}.txt").write_text("")
     monkeypatch.setattr(contents, "LARGEST", 99)
     monkeypatch.setattr(contents, "MOST", 8)
-    links = ("link/work.py", "link", "out.py", "elsewhere")
+    (folder / "own/work.py").write_text("mine")
+    (folder / "others").symlink_to(folder / "own")
+    (folder / "others.py").symlink_to(folder / "own/work.py")
+    links = ("link/work.py", "link", "out.py", "elsewhere", "others", "others.py")
     assert {_refused(folder / name) for name in links} == {"link"}
     assert {_refused(folder / name) for name in ("loop", "circle", "pipe")} == {"unreadable"}
     assert _refused(folder / "huge") == "huge"
@@ -161,6 +164,11 @@ def test_an_archive_is_read_where_there_is_nothing_else(
     with zipfile.ZipFile(tmp_path / "bomb.zip", "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("work.py", "#" * 100_000)
     assert _refused(tmp_path / "bomb.zip") == "huge"
+    with zipfile.ZipFile(tmp_path / "unnamed.zip", "w") as archive:
+        archive.writestr("x", "")
+    nameless = (tmp_path / "unnamed.zip").read_bytes().replace(b"x", b"\0")
+    (tmp_path / "unnamed.zip").write_bytes(nameless)
+    assert _refused(tmp_path / "unnamed.zip") == "empty"
     (tmp_path / "cut.zip").write_bytes(whole.read_bytes()[:-30])
     (tmp_path / "work.rar").write_bytes(b"Rar!")
     spoilt = bytearray(whole.read_bytes())

@@ -40,6 +40,10 @@ In = In()""",
 }
 
 
+EVIL = """import pathlib, radiokit as rk
+pathlib.Path({mark!r}).touch()"""
+
+
 def nbgrader(*words, cwd):
     """Run the real tool; it finds its helpers and kernel beside this interpreter."""
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
@@ -55,11 +59,24 @@ def cells_by_id(path):
     return {cell.metadata.nbgrader["grade_id"]: cell for cell in cells if "nbgrader" in cell.metadata}
 
 
+def with_an_essay(path):
+    """Let the instructor ask for code that a person reads: a graded cell that a student writes."""
+    notebook = nbformat.read(path, as_version=4)
+    about = {"grade_id": "essay", "grade": True, "solution": True, "locked": False, "points": 0}
+    metadata = {"nbgrader": {**about, "schema_version": 3, "task": False}}
+    notebook.cells.append(nbformat.v4.new_code_cell("...", metadata=metadata))
+    nbformat.write(notebook, path)
+
+
 def graded_course(folder):
     """Make a course in a folder: the release, two submissions, and their grades."""
     rk.grading.write_handout(HOMEWORK, nbgrader=folder, solution=SOLUTION)
+    with_an_essay(folder / "source/homework/homework.ipynb")
+    evil = folder / "evil.py"
+    evil.write_text(EVIL.format(mark=str(folder / "mark")))
+    essay = f'pass\nrk.grading.kernel_points("cone", assignment={str(evil)!r}, language="en")'
     nbgrader("generate_assignment", "homework", cwd=folder)
-    for student, answers in (("right", RIGHT), ("hostile", HOSTILE)):
+    for student, answers in (("right", RIGHT), ("hostile", {**HOSTILE, "essay": essay})):
         notebook = nbformat.read(folder / "release/homework/homework.ipynb", as_version=4)
         for cell in notebook.cells:
             cell.source = answers.get(cell.metadata.get("nbgrader", {}).get("grade_id"), cell.source)
@@ -98,6 +115,7 @@ def test_each_gets_what_is_earned_and_nothing_that_is_shown_or_forged(tmp_path):
     One test, as nbgrader takes its time.
     """
     graded_course(tmp_path)
+    assert not (tmp_path / "mark").exists()  # no assignment that a student names is run
     look_at_the_release(cells_by_id(tmp_path / "release/homework/homework.ipynb"))
     with (tmp_path / "grades.csv").open() as file:
         rows = list(csv.DictReader(file))

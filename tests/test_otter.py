@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import pickle
 import re
 import subprocess
 import sys
@@ -27,6 +28,30 @@ ENDLESS = """def irradiance(intensity, distance, theta):
 FORGING = """from radiokit.faces.grading.handout import kernel
 kernel.kernel_check = lambda *a, **k: None"""
 TOP_LEVEL = "while True:\n    pass"
+STRAY = ("assignment/homework.py", "radiokit.py", "numpy.py", "ipykernel_launcher.py", "__init__.py")
+"""What may not run, though it is handed in beside the notebook."""
+
+
+class Unpickled:
+    """Otter unpickles its log in its own process, where it finds one."""
+
+    def __init__(self, mark):
+        self.mark = mark
+
+    def __reduce__(self):
+        return (Path.touch, (self.mark,))
+
+
+def handed_in(folder, notebook, mark):
+    """Return a submission of many files, each of which makes the file ``mark`` if it is run."""
+    path = folder / "theirs.zip"
+    evil = f"import pathlib\npathlib.Path({str(mark)!r}).touch()\n"
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("homework.ipynb", nbformat.writes(notebook))
+        for name in STRAY:
+            archive.writestr(name, evil)
+        archive.writestr(".OTTER_LOG", pickle.dumps(Unpickled(mark)))
+    return path
 
 
 def otter(*words, cwd):
@@ -85,7 +110,7 @@ def look_at_the_autograder(file):
 
 
 def test_wrong_and_hostile_answers_cost_their_own_points_alone(tmp_path):
-    """A function that never ends, one that loses digits, a forger, and a cell that never ends.
+    """A function that never ends, one that loses digits, a forger, a cell that never ends, evil files beside.
 
     One test, as otter takes its time: what is assigned, and one run.
     """
@@ -99,10 +124,18 @@ def test_wrong_and_hostile_answers_cost_their_own_points_alone(tmp_path):
         elif cell.cell_type == "code" and "def cone" in cell.source:
             cell.source = NAIVE
     notebook.cells[1:1] = [nbformat.v4.new_code_cell(source) for source in (FORGING, TOP_LEVEL)]
-    handed_in = tmp_path / "theirs" / "homework.ipynb"
-    handed_in.parent.mkdir()
-    nbformat.write(notebook, handed_in)
-    told = otter("run", handed_in, "-a", autograder, "-o", tmp_path, "--no-logo", cwd=tmp_path)
+    mark = tmp_path / "mark"
+    told = otter(
+        "run",
+        handed_in(tmp_path, notebook, mark),
+        "-a",
+        autograder,
+        "-o",
+        tmp_path,
+        "--no-logo",
+        cwd=tmp_path,
+    )
+    assert not mark.exists()
     found = {each["name"]: each for each in json.loads((tmp_path / "results.json").read_text())["tests"]}
     assert (found["irradiance"]["score"], found["irradiance"]["max_score"]) == (0, 2)
     assert (found["cone"]["score"], found["cone"]["max_score"]) == (1.5, 3)

@@ -389,6 +389,7 @@ def test_nothing_outlives_a_killed_parent(tmp_path, name):
                 (b'{"arrays": [["<f8", [1e300]]]}', "not of lengths"),
                 (b'{"arrays": [["<f8", [1099511627775, 1099511627775]]]}', "are claimed, 8 came"),
                 (b'{"arrays": [["<f8", [1, 1, 1, 1, 1]]]}', "more than 4 dimensions"),
+                (b'{"arrays": [["<f8", [0, 549755813888, 549755813888]]]}', "too large"),
                 (b'{"arrays": [["<f8", [2]]]}', "16 bytes are claimed, 8 came"),
             ]
         ),
@@ -453,10 +454,53 @@ def test_what_is_done_apart_is_forgotten(tmp_path):
             with sandbox.apart():
                 found += [sandbox.call("count", X).values[0] for _ in range(2)]
         with sandbox.apart():
-            assert sandbox.call("end", X, timeout=0.3).error
+            assert "not believed: it answers what was not asked" in sandbox.call("end", X).error
         with sandbox.apart():
             found.append(sandbox.call("count", X).values[0])
         assert found == [1, 2, 3, 4, 3, 4, 1]
+
+
+LEAVING = """
+import os, signal, time
+def leave(x, doing):
+    read, write = os.pipe()
+    if os.fork() == 0:
+        os.setsid()
+        if os.fork() == 0:
+            parent = os.getppid()
+            os.write(write, b"x")
+            while True:
+                time.sleep(0.002)
+                doing(parent)
+        os._exit(0)
+    os.read(read, 1)
+    return x
+def talk(pid):
+    for descriptor in range(3, 64):
+        try: os.write(descriptor, b"RKG1" + bytes(12))
+        except OSError: pass
+def listen(pid):
+    for descriptor in range(3, 64):
+        try: os.set_blocking(descriptor, False); os.read(descriptor, 1 << 16)
+        except OSError: pass
+def leaves_one_who_listens(x): return leave(x, listen)
+def leaves_one_who_talks(x): time.sleep(0.02); return leave(x, talk)
+def honest(x): time.sleep(0.05); return 2 * x
+"""
+
+
+@pytest.mark.parametrize("function", ["listens", "talks"])
+def test_what_a_copy_leaves_behind_harms_no_later_one(tmp_path, function):
+    (tmp_path / "leaving.py").write_text(LEAVING, encoding="utf-8")
+    with Sandbox(tmp_path / "leaving.py") as sandbox:
+        with sandbox.apart():
+            sandbox.call(f"leaves_one_who_{function}", X)
+        for _ in range(2):
+            with sandbox.apart():
+                for _ in range(3):
+                    result = sandbox.call("honest", X)
+                    assert result.ok, result.error
+                    np.testing.assert_array_equal(result.values[0], 2 * X)
 
 
 @pytest.mark.parametrize("function", ["exits", "kills_itself"])

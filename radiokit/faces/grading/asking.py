@@ -56,13 +56,14 @@ def is_right(result: Result, right: Array, allowed: Array) -> bool:
 def fitted(result: Result, right: Array, language: str) -> tuple[Array, str]:
     """Return the answer in the shape of what is right, or what is wrong with it."""
     (answer, *more) = result.values
+    key = "one-number" if right.shape == (1,) else "shape"
     if more:
         shape = " × ".join(str(value.shape) for value in result.values)
-        return answer, say(language, "shape", shape=shape, expected=right.shape)
+        return answer, say(language, key, shape=shape, expected=right.shape)
     if answer.dtype.kind == "c":
         return answer, say(language, "complex")
     if answer.size != right.size or (answer.ndim > right.ndim and max(answer.shape) != answer.size):
-        return answer, say(language, "shape", shape=answer.shape, expected=right.shape)
+        return answer, say(language, key, shape=answer.shape, expected=right.shape)
     if answer.dtype.kind != "f":
         answer = answer.astype(float)
     return answer.reshape(right.shape), ""

@@ -49,8 +49,8 @@ class Assignment:
     Raises
     ------
     ParameterError
-        When a name is no identifier, a text is missing, two questions ask for one function, or hints, credit
-        or variants name a misconception that is none.
+        When a name is no identifier, a text is missing, a function is asked for twice, or hints, credit or
+        variants name a misconception that is none.
     """
 
     name: str
@@ -76,9 +76,9 @@ class Assignment:
                 else None
             )
             raise ParameterError("questions", kinds or type(self.questions).__name__, allowed)
-        names = [question.name for question in self.questions]
+        names = [name for question in self.questions for name in question.functions]
         if not names or len(set(names)) != len(names):
-            raise ParameterError("questions", names, "at least one question, each for a function of its own")
+            raise ParameterError("questions", names, "at least one question, each for functions of its own")
         object.__setattr__(self, "questions", tuple(self.questions))
         check_names(self.questions)
 
@@ -96,9 +96,10 @@ class Assignment:
             When none does.
         """
         for question in self.questions:
-            if question.name == name:
+            if name in question.functions:
                 return question
-        raise UnknownNameError("question", name, [question.name for question in self.questions])
+        also = [each for question in self.questions for each in question.functions]
+        raise UnknownNameError("question", name, [question.name for question in self.questions], also)
 
 
 def student_rng(

@@ -14,17 +14,22 @@ import marshal
 import os
 import signal
 import sys
+import time
 from pathlib import Path
 from typing import Any
 
 __all__: list[str] = []
 
 PACKAGE = "radiokit.faces.grading."
-PARTS = ("sources", "imports", "protocol", "loading", "answers")
+PARTS = ("sources", "imports", "protocol", "loading", "answers", "signature")
 HIGH = 40
 """The first file descriptor tried for the private pipes."""
 BRANCH_ENDED = 90
 """Exit code of a branch that was told to end."""
+CLEARING = 2.0
+"""How long it may take to end what a branch has started [s]."""
+SET_CHILD_SUBREAPER = 36
+"""Of ``prctl`` on Linux."""
 
 
 def _beside(name: str) -> Any:
@@ -56,7 +61,7 @@ class _Child:
         parts = {name: _beside(name) for name in PARTS}
         for name in PARTS:  # a submission finds them under names that no other module has
             sys.modules[f"_{name}"] = sys.modules.pop(PACKAGE + name)
-        self._protocol, self._loading, self._answers = (parts[name] for name in PARTS[-3:])
+        self._protocol, self._loading, self._answers, self._signature = (parts[name] for name in PARTS[2:])
         self._finder = parts["imports"].Finder()
         self._requests, self._results = requests, results
         self._pack, self._text = self._protocol.pack, self._protocol.plain_text
@@ -96,23 +101,29 @@ class _Child:
     def _branch(self, request: dict[str, Any]) -> None:
         """Go on in a copy of this process, or end the copy: then all goes on from here, as it was before.
 
-        A copy that ends by itself ends this process in the same way.
+        A copy that ends by itself ends this process in the same way. What a copy started ends with it. That
+        it has ended is said by this process alone.
         """
         self._flush()
         if not request["branch"]:
-            self.send({"id": request["id"], "facts": {}})
             self._exit(BRANCH_ENDED)
+        before = _children()
+        _adopt()
         branch = self._fork()
         if branch == 0:
             self.send({"id": request["id"], "facts": {}})
             return
-        code = os.waitstatus_to_exitcode(self._wait(branch, 0)[1])
+        ended, status = self._wait(-1, 0)
+        while ended != branch:  # orphans of the copy
+            ended, status = self._wait(-1, 0)
+        code = os.waitstatus_to_exitcode(status)
         if code < 0:
             if -code != signal.SIGKILL:
                 signal.signal(-code, signal.SIG_DFL)
             os.kill(os.getpid(), -code)
-        elif code != BRANCH_ENDED:
+        elif code != BRANCH_ENDED or not _cleared(before):
             self._exit(code)
+        self.send({"id": request["end"], "facts": {}})
 
     def _flush(self) -> None:
         with contextlib.suppress(BaseException):
@@ -146,7 +157,7 @@ class _Child:
         for part in request["function"].split("."):
             found = getattr(found, part, None)
         if request.get("facts"):
-            return {"facts": _facts(found)}, []
+            return {"facts": {**_facts(found), "parameters": self._signature.listed(found)}}, []
         if found is None:
             return {"refused": f"defines no function {request['function']!r}"}, []
         if not callable(found):
@@ -176,6 +187,36 @@ class _Child:
             except BaseException as error:
                 raise _RowError(i, error) from None
         return list(taker.stacked(rows, outputs, mode == "single"))
+
+
+def _adopt() -> None:
+    """Have the orphans of what is started from here become children of this process, where that is known."""
+    if sys.platform == "linux":
+        import ctypes
+
+        ctypes.CDLL(None).prctl(SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+
+
+def _children() -> set[int]:
+    """Return the processes whose parent this is, where that is told."""
+    found: set[int] = set()
+    with contextlib.suppress(OSError):
+        for task in Path("/proc/self/task").iterdir():
+            found |= set(map(int, (task / "children").read_text().split()))
+    return found
+
+
+def _cleared(before: set[int]) -> bool:
+    """End all children but those of before, and their own in turn; return whether that was done in time."""
+    deadline = time.monotonic() + CLEARING
+    while left := _children() - before:
+        if time.monotonic() > deadline:
+            return False
+        for pid in left:
+            with contextlib.suppress(OSError):
+                os.kill(pid, signal.SIGKILL)
+                os.waitpid(pid, 0)
+    return True
 
 
 def _row(array: Any, i: int, mode: str) -> Any:

@@ -15,6 +15,7 @@ from radiokit.faces.grading.directions import ABOVE
 from radiokit.faces.grading.finding import Callee, Finding, Mode
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.runs import UnusableError
+from radiokit.faces.grading.russian import did
 from radiokit.faces.grading.samplewords import line, slip, tell
 from radiokit.faces.grading.words import say
 from radiokit.facts.errors import ParameterError
@@ -87,7 +88,7 @@ class Draws:
             if callee is self.callee:
                 self.quickest = min(self.quickest, result.seconds / len(given))
             if not result.ok:
-                text = say(self.language, "call", function=name, error=result.error)
+                text = did(self.language, name, result.error)
                 if result.error.startswith("defines no function"):
                     text = line(say(self.language, "no-function", function=name, guess=""))
                 problem = problem or UnusableError(Finding(share=0.0, text=text))

@@ -12,6 +12,7 @@ import numpy as np
 from radiokit.faces.diagnosis.catalogue import CATALOGUE
 from radiokit.faces.diagnosis.diagnose import diagnose
 from radiokit.faces.diagnosis.result import Suspicion
+from radiokit.faces.grading.exact import Reference, as_function, no_inputs
 from radiokit.faces.grading.finding import Callee, Finding
 from radiokit.faces.grading.given import check_functions, check_shares, number, own
 from radiokit.faces.grading.protocol import Array
@@ -27,6 +28,7 @@ from radiokit.faces.grading.runtests import (
     rate,
     rate_slip,
 )
+from radiokit.faces.grading.russian import translated
 from radiokit.faces.grading.samplewords import PLAIN, line, slip, tell
 from radiokit.faces.grading.words import say
 from radiokit.facts.errors import ParameterError
@@ -58,11 +60,11 @@ class Estimator:
 
     Parameters
     ----------
-    inputs : callable
+    reference : callable, Case or float
+        ``reference(**inputs)`` gives the exact value, which is not 0; or a closed-form case, or the value.
+    inputs : callable, optional
         From a generator to the inputs by name, numbers or arrays, in the order of the parameters, without
-        ``samples`` and ``seed``.
-    reference : callable
-        ``reference(**inputs)`` gives the exact value, which is not 0.
+        ``samples`` and ``seed``; none by default.
     aspect : {"value", "error", "efficiency"}
     samples : int
         N, at least 64.
@@ -104,8 +106,8 @@ class Estimator:
     192
     """
 
-    inputs: Callable[[np.random.Generator], Mapping[str, Any]]
-    reference: Callable[..., Any]
+    reference: Reference
+    inputs: Callable[[np.random.Generator], Mapping[str, Any]] = no_inputs
     aspect: Aspect = "value"
     samples: int = 256
     runs: int = 24
@@ -120,13 +122,14 @@ class Estimator:
     slowest: float = 1e-3
 
     def __post_init__(self) -> None:
+        as_function(self.reference)
         if self.aspect not in get_args(Aspect):
             raise ParameterError("aspect", self.aspect, ", ".join(get_args(Aspect)))
         for name, least in (("samples", 64), ("runs", 8), ("cases", 1)):
             value = getattr(self, name)
             if type(value) is not int or value < least:
                 raise ParameterError(name, value, f"an integer of at least {least}")
-        functions = ("inputs", "reference", "context", "budget", "uniform")
+        functions = ("inputs", "context", "budget", "uniform")
         check_functions({name: getattr(self, name) for name in functions}, self.variants)
         check_shares("credit", self.credit)
         if self.aspect == "efficiency" and (self.budget is None or self.uniform is None):
@@ -152,7 +155,7 @@ class Estimator:
                     callee,
                     rng,
                     inputs=self.inputs,
-                    reference=self.reference,
+                    reference=as_function(self.reference),
                     cases=self.cases,
                     samples=self.samples,
                     runs=self.runs,
@@ -283,7 +286,7 @@ class Estimator:
                 return [say(language, "one-of", names=names), seen], first.name, first.confidence
             why = slip(language, first.name, hints)
             if first.detail and first.name not in hints and first.name not in PLAIN:
-                why = f"{first.message.rstrip('.')} ({first.detail})"
+                why = f"{first.message.rstrip('.')} ({translated(language, first.detail)})"
             return [why, seen], first.name, first.confidence
         return [seen], "", 0.0
 
@@ -296,15 +299,13 @@ class Estimator:
         }
         error = WIDER * np.sqrt(runs.variances / runs.values.shape[1]) + runs.floor / 10
 
+        exact = as_function(self.reference)
+
         def reference(**changed: Any) -> Array:
             try:  # out of its domain it may do anything, which then explains nothing
                 return np.array(
                     [
-                        float(
-                            self.reference(
-                                **{n: changed[n][k] if n in changed else v for n, v in each.items()}
-                            )
-                        )
+                        float(exact(**{n: changed[n][k] if n in changed else v for n, v in each.items()}))
                         for k, each in enumerate(runs.inputs)
                     ]
                 )

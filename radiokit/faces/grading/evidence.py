@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from radiokit.faces.grading.protocol import Array, plain_text
+from radiokit.faces.grading.russian import translated
 from radiokit.faces.grading.words import say, sentence
 
 __all__ = ["LONGEST", "clause", "hint_for", "joined", "rows", "wrong_at"]
@@ -70,7 +71,8 @@ def hint_for(
     """
     if suspicion.name in hints:
         return hints[suspicion.name][language]
-    detail = "" if suspicion.name in (PLAIN if shown else PLAIN + TELLING) else suspicion.detail
+    hidden = suspicion.name in (PLAIN if shown else PLAIN + TELLING)
+    detail = "" if hidden else translated(language, suspicion.detail)
     hint: str = suspicion.message.rstrip(".")
     return f"{hint} ({detail})" if detail else hint
 
@@ -79,10 +81,13 @@ def wrong_at(
     answer: Array, right: Array, given: Mapping[str, Array], good: Array, language: str, *, shown: bool
 ) -> tuple[str, str]:
     """Return how often an answer is wrong, with the worst input and what comes out there, and without."""
-    count = say(language, "wrong", bad=rows(~good), count=len(right))
     row = _worst(answer, right, good)
     named = [f"{name} = {_brief(_at(value, row))}" for name, value in given.items() if _is_short(value)]
     value, truth = _told_apart(answer[row], right[row])
+    if not given:
+        alone = say(language, "number-shown" if shown else "number-hidden", value=value, right=truth)
+        return alone, alone
+    count = say(language, "wrong", bad=rows(~good), count=len(right))
     full = count
     for most in range(len(named), -1, -1):  # fewer inputs where they would be too long
         inputs = ", ".join(named[:most]) + (", …" if most < len(given) else "")

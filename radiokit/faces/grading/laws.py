@@ -54,7 +54,8 @@ class Laws:
         Each law's share of the points, above 0, by law; 1 by default.
     parameters : callable or sequence of mappings
         The keyword arguments with which the function is judged, each in turn; or from a generator to them. A
-        law must turn out as expected with all of them. The function's parameters must have these names.
+        law must turn out as expected with all of them. They stand in the order of the function's parameters:
+        a function that does not know their names is given them in that order.
     reference : callable, optional
         ``reference(**parameters)`` gives the BSDF that the function should be, of one wavelength. Where it is
         another, the misconception is named; a constant, or what no known misconception leads to, earns

@@ -10,6 +10,7 @@ import numpy as np
 from radiokit.checks.probes import channels, polar
 from radiokit.contracts.bsdf import BSDF, FloatArray
 from radiokit.faces.grading.protocol import plain_text
+from radiokit.faces.grading.russian import did
 from radiokit.faces.grading.words import Words, say
 from radiokit.facts.errors import CallableError
 from radiokit.facts.verdict import Outcome, Verdict
@@ -17,8 +18,6 @@ from radiokit.facts.verdict import Outcome, Verdict
 __all__ = ["LAW_SENTENCES", "failed", "found", "law_name", "place_of", "remarks", "share_of_light", "tell"]
 
 LAW_SENTENCES: Mapping[str, Words] = {
-    "did": {"en": "{function} {problem}", "ru": "{function}: {problem}"},
-    "raised": {"en": "{function} raised {problem}", "ru": "{function}: ошибка {problem}"},
     "slow": {
         "en": "; judging takes about {pairs} pairs of directions: compute with whole arrays, without loops",
         "ru": "; для проверки нужно около {pairs} пар направлений: считайте целыми массивами, без циклов",
@@ -178,8 +177,7 @@ def found(verdict: Verdict, model: BSDF, language: str, *, mutual: bool) -> tupl
 def failed(error: CallableError, language: str) -> str:
     """Return the sentence on a function that raised, was stopped, or returned what is no value."""
     function, problem = error.fields["function"], plain_text(error.fields["problem"])
-    key = "raised" if problem.startswith("raised ") else "did"
-    text = tell(language, key, function=function, problem=problem.removeprefix("raised "))
+    text = did(language, function, problem)
     if "took longer than" in problem:
         text += tell(language, "slow", pairs=ASKED)
     if "unexpected keyword argument" in problem:

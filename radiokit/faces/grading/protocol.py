@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import struct
 from collections.abc import Sequence
 from typing import Any
@@ -22,6 +23,7 @@ MAGIC = b"RKG1"
 PREFIX = struct.Struct("<4sIQ")
 HEADER_LIMIT = 1 << 16
 TYPES = {"<f8": 8, "<f4": 4, "<c16": 16, "<i8": 8, "|b1": 1}
+COMMAND = re.compile(r"^::|##(?=\w*\[)")
 ARRAYS = 8
 DIMENSIONS = 4
 
@@ -35,11 +37,15 @@ class MalformedError(ValueError):
 def plain_text(text: object, limit: int = 300) -> str:
     r"""Return a text of unknown origin as one printable line of at most ``limit`` characters.
 
-    >>> plain_text("a\x1b[31m\n b")
-    'a?[31m b'
+    None is a command where logs are read for commands, as GitHub's and Azure's runners do: no line begins
+    with two colons, and none has ``##[`` or ``##vso[``.
+
+    >>> plain_text("a\x1b[31m\n b"), plain_text("::add-mask::1"), plain_text("x ##[error]y")
+    ('a?[31m b', ': :add-mask::1', 'x # #[error]y')
     """
     words = " ".join(str(text)[: 4 * limit].split())
     line = "".join(letter if letter.isprintable() else "?" for letter in words)
+    line = COMMAND.sub(lambda found: f"{found[0][0]} {found[0][0]}", line)
     return line if len(line) <= limit else line[: limit - 1] + "…"
 
 
@@ -142,4 +148,6 @@ def _size(described: Any) -> int:
         raise MalformedError(f"an array has no shape, or more than {DIMENSIONS} dimensions")
     if not all(type(length) is int and 0 <= length < 1 << 40 for length in shape):
         raise MalformedError("an array's shape is not of lengths")
+    if 0 in shape and math.prod(length or 1 for length in shape) >= 1 << 40:  # of which NumPy makes no array
+        raise MalformedError("an empty array's shape is too large")
     return TYPES[kind] * math.prod(shape)

@@ -45,6 +45,8 @@ class Part:
     visibility : str
         ``"visible"``: the student sees it at once, right values included; ``"hidden"``, ``"after_due_date"``,
         ``"after_published"``: never, or later.
+    function : str
+        Which of the question's functions is judged; its own by default.
     title : mapping, optional
         ``{"en": ..., "ru": ...}``; the usual names have one.
 
@@ -58,6 +60,7 @@ class Part:
     judge: Judge
     weight: float = 1.0
     visibility: Visibility = "visible"
+    function: str = ""
     title: Words = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -78,7 +81,7 @@ class Part:
 
 @dataclass(frozen=True, kw_only=True)
 class Question:
-    """One question: a function that the student writes.
+    """One question: a function that the student writes, and what he is to write beside it.
 
     Parameters
     ----------
@@ -90,6 +93,9 @@ class Question:
     title, text : mapping
         ``{"en": ..., "ru": ...}``, the text in Markdown with LaTeX.
     parts : tuple of Part
+    also : tuple of str
+        The signatures of further functions that it asks for, such as ``"cosine_pdf(directions)"`` beside
+        ``"cosine_sample(u)"``. A judge finds them with ``callee.other(name)``; a part may be on one of them.
     hints : mapping
         Further sentences ``{"en": ..., "ru": ...}`` by the misconception that they answer, one of
         ``rk.list_misconceptions()`` or of a judge's ``variants``.
@@ -99,7 +105,8 @@ class Question:
     Raises
     ------
     ParameterError
-        When an argument is out of its range, or two parts have one name.
+        When an argument is out of its range, two parts or functions have one name, or a part is on a function
+        that is not asked for.
 
     Examples
     --------
@@ -114,8 +121,8 @@ class Question:
     ...     text=both,
     ...     parts=(Part(name="ordinary", judge=judge),),
     ... )
-    >>> square.name, square.parameters
-    ('square', ('x',))
+    >>> square.name, square.functions
+    ('square', {'square': ('x',)})
     """
 
     signature: str
@@ -123,15 +130,21 @@ class Question:
     title: Words
     text: Words
     parts: tuple[Part, ...]
+    also: tuple[str, ...] = ()
     hints: Mapping[str, Words] = field(default_factory=dict)
     seconds: float = 10.0
 
     def __post_init__(self) -> None:
-        arguments = _function(self.signature).args
-        if arguments.vararg or arguments.kwarg:
-            raise ParameterError(
-                "signature", self.signature, "without * and **: inputs are handed over by place"
-            )
+        for signature in (self.signature, *((self.also,) if isinstance(self.also, str) else self.also)):
+            arguments = _function(signature).args
+            if arguments.vararg or arguments.kwarg:
+                raise ParameterError(
+                    "signature", signature, "without * and **: inputs are handed over by place"
+                )
+        if isinstance(self.also, str):
+            raise ParameterError("also", self.also, "a tuple of signatures")
+        if len(self.functions) != 1 + len(self.also):
+            raise ParameterError("also", self.also, "signatures, each of a name of its own")
         for name in ("points", "seconds"):
             value = getattr(self, name)
             if not isinstance(value, int | float) or not 0 < value < math.inf:
@@ -152,6 +165,9 @@ class Question:
         if not names or len(set(names)) != len(names):
             raise ParameterError(f"{self.name}: parts", names, "at least one part, each of a name of its own")
         object.__setattr__(self, "parts", tuple(self.parts))
+        for part in self.parts:
+            if self.judged(part) not in self.functions:
+                raise ParameterError("function", part.function, f"among {', '.join(self.functions)}")
 
     @property
     def name(self) -> str:
@@ -161,8 +177,22 @@ class Question:
     @property
     def parameters(self) -> tuple[str, ...]:
         """The names of its parameters, in order."""
-        arguments = _function(self.signature).args
-        return tuple(each.arg for each in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs))
+        return self.functions[self.name]
+
+    @property
+    def functions(self) -> Mapping[str, tuple[str, ...]]:
+        """The parameters of each function that it asks for by that function's name, its own first."""
+        found = [_function(signature) for signature in (self.signature, *self.also)]
+        return {
+            each.name: tuple(
+                one.arg for one in (*each.args.posonlyargs, *each.args.args, *each.args.kwonlyargs)
+            )
+            for each in found
+        }
+
+    def judged(self, part: Part) -> str:
+        """Return the name of the function that a part is on."""
+        return part.function or self.name
 
     @property
     def needed(self) -> int:

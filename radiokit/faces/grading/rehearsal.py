@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from radiokit.faces.grading.assignment import Assignment, load_assignment, student_rng
 from radiokit.faces.grading.estimator import Estimator
+from radiokit.faces.grading.exact import as_function
 from radiokit.faces.grading.given import drawn, number, numbers, own, shown, truth
 from radiokit.faces.grading.laws import Laws
 from radiokit.faces.grading.protocol import Array
@@ -72,6 +74,8 @@ def faults(assignment: Assignment, *, student: str = "", secret: str = "") -> It
 
 def _tried(part: Part, question: Question, rng: np.random.Generator) -> None:
     judge: Any = part.judge
+    asked = next(each for each in (question.signature, *question.also) if _is_of(each, question.judged(part)))
+    question = replace(question, signature=asked, also=(), parts=(replace(part, function=""),))
     for kind, tried in _TRIED.items():
         if isinstance(judge, kind):
             tried(judge, question, rng)
@@ -80,14 +84,14 @@ def _tried(part: Part, question: Question, rng: np.random.Generator) -> None:
 
 
 def _values(judge: Values, question: Question, rng: np.random.Generator) -> None:
-    given = drawn(judge.inputs, rng)
+    given, reference = drawn(judge.inputs, rng), as_function(judge.reference)
     _named(question, list(given), after=question.parameters[len(given) :][: _optional(question, given)])
-    right = truth(judge.reference, given)
+    right = truth(reference, given)
     allowed = judge.allowed(right, judge.rtol)
-    _steady(judge.reference, given, right)
+    _steady(reference, given, right)
     turned = {name: array[::-1] if array.ndim else array for name, array in given.items()}
     if any(array.ndim for array in given.values()):
-        off = np.abs(truth(judge.reference, turned)[::-1] - right)
+        off = np.abs(truth(reference, turned)[::-1] - right)
         if not np.all(off <= allowed):
             worst = float(np.max(off / np.maximum(np.abs(right), 1e-300)))
             raise AssignmentError(
@@ -106,7 +110,7 @@ def _values(judge: Values, question: Question, rng: np.random.Generator) -> None
 
 
 def _estimator(judge: Estimator, question: Question, rng: np.random.Generator) -> None:
-    state = rng.bit_generator.state
+    state, reference = rng.bit_generator.state, as_function(judge.reference)
     given = drawn(judge.inputs, rng, rows=False)
     _named(question, list(given), after=question.parameters[len(given) :][:2])
     if len(question.parameters) != len(given) + 2 or question.parameters[-2:] == ("seed", "samples"):
@@ -115,8 +119,8 @@ def _estimator(judge: Estimator, question: Question, rng: np.random.Generator) -
             f"signature = {question.signature!r} is not allowed: it must be {question.name}({wanted})"
         )
     rng.bit_generator.state = state
-    given, right = exact(judge.inputs, judge.reference, rng)
-    _steady(judge.reference, given, np.array([right]))
+    given, right = exact(judge.inputs, reference, rng)
+    _steady(reference, given, np.array([right]))
     for name, variant in judge.variants.items():
         number(variant, given, f"variants[{name!r}]")
     for what in ("budget", "uniform"):
@@ -145,7 +149,7 @@ def _laws(judge: Laws, question: Question, rng: np.random.Generator) -> None:
         )
     wi, wo = DIRECTIONS, DIRECTIONS[::-1]
     for given in judge.chosen(rng):
-        _named(question, list(given), before=question.parameters[:2], ordered=False)
+        _named(question, list(given), before=question.parameters[:2])
         if judge.reference is not None:
             judge.meant(given)
         for name, variant in judge.variants.items():
@@ -165,6 +169,10 @@ _TRIED: Mapping[type, Callable[[Any, Question, np.random.Generator], None]] = {
 }
 
 
+def _is_of(signature: str, function: str) -> bool:
+    return signature.partition("(")[0].strip() == function
+
+
 def _optional(question: Question, given: Mapping[str, Any]) -> int:
     """Return how many of the parameters that get no input need none."""
     return len(question.parameters) - max(len(given), question.needed)
@@ -176,12 +184,11 @@ def _named(
     *,
     before: tuple[str, ...] = (),
     after: tuple[str, ...] = (),
-    ordered: bool = True,
 ) -> None:
     """Check that inputs are a question's parameters, between those that are no inputs."""
     wanted = question.parameters[len(before) : len(question.parameters) - len(after)]
-    if (tuple(names) if ordered else sorted(names)) != (wanted if ordered else sorted(wanted)):
-        order = ", in the same order" if ordered and sorted(names) == sorted(wanted) else ""
+    if tuple(names) != wanted:
+        order = ", in the same order" if sorted(names) == sorted(wanted) else ""
         taken = f" after {', '.join(before)}" if before else ""
         raise AssignmentError(
             f"inputs are named ({', '.join(names)}), but the parameters of {question.signature}{taken} are "

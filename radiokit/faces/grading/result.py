@@ -19,6 +19,7 @@ __all__ = ["Result", "judged", "steady"]
 
 NAMES = 60
 PROBLEMS = 20
+LARGEST = 1e300
 _PLACE = re.compile(r"(cell \d{1,6})?(, )?(line \d{1,7})?")
 
 
@@ -129,7 +130,20 @@ def _facts(found: Any) -> dict[str, Any]:
     if not isinstance(found, dict):
         raise MalformedError("its facts are none")
     eta = found.get("eta")
+    if not (eta is None or (isinstance(eta, int | float) and -LARGEST <= eta <= LARGEST)):
+        raise MalformedError("its refractive index is no number")
     return {
         **{name: found.get(name) is True for name in ("callable", "pdf", "sample", "transmissive")},
-        "eta": float(eta) if isinstance(eta, int | float) else None,
+        "eta": None if eta is None else float(eta),
+        "parameters": _parameters(found.get("parameters")),
     }
+
+
+def _parameters(found: Any) -> tuple[tuple[str, bool], ...]:
+    """Return the parameters that a function says it has, as ``signature.listed`` does."""
+    listed = found[:NAMES] if isinstance(found, list) else []
+    return tuple(
+        (plain_text(each[0], 60), each[1] is True)
+        for each in listed
+        if isinstance(each, list) and len(each) == 2
+    )

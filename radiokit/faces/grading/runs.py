@@ -14,8 +14,8 @@ from radiokit.faces.grading.finding import Callee, Finding
 from radiokit.faces.grading.given import drawn, number
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.result import Result
+from radiokit.faces.grading.russian import did
 from radiokit.faces.grading.samplewords import line, slip, tell
-from radiokit.faces.grading.words import say
 from radiokit.facts.errors import AssignmentError
 
 __all__ = ["FLOOR", "Runs", "UnusableError", "described", "exact", "gather"]
@@ -199,8 +199,7 @@ def _pair(callee: Callee, result: Result, inputs: Mapping[str, Any], language: s
     if not result.ok and not result.raised and "are wanted" in result.error:
         raise UnusableError(Finding(share=0.0, text=pair))
     if not result.ok:
-        text = say(language, "call", function=callee.name, error=result.error)
-        raise UnusableError(Finding(share=0.0, text=text))
+        raise UnusableError(Finding(share=0.0, text=did(language, callee.name, result.error)))
     numbers = [array for array in result.values if array.size == 1 and array.dtype.kind != "c"]
     if len(numbers) != 2 or len(result.values) != 2:
         raise UnusableError(Finding(share=0.0, text=pair))

@@ -14,11 +14,13 @@ from radiokit.faces.diagnosis.catalogue import CATALOGUE
 from radiokit.faces.diagnosis.diagnose import diagnose
 from radiokit.faces.grading.directions import ASKED, UNIFORM, integral, probes, uniform_variance
 from radiokit.faces.grading.draws import Draws, Fit, cells_of_density, sampled, u_slip
+from radiokit.faces.grading.exact import no_inputs
 from radiokit.faces.grading.finding import Callee, Finding
 from radiokit.faces.grading.given import check_functions, check_shares, drawn, numbers, own, shown
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.runs import UnusableError
 from radiokit.faces.grading.runtests import ROUNDS, each_level
+from radiokit.faces.grading.russian import translated
 from radiokit.faces.grading.samplewords import PLAIN, line, slip, tell
 from radiokit.facts.errors import AssignmentError, ParameterError
 from radiokit.measure.statistics import bernstein_test
@@ -32,10 +34,6 @@ FITS = 1e-3
 
 SURE = 0.5
 """From which confidence on a misconception is named."""
-
-
-def _nothing(rng: np.random.Generator) -> Mapping[str, Any]:
-    return {}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,7 +93,7 @@ class Sampler:
     """
 
     density: Callable[..., Any]
-    inputs: Callable[[np.random.Generator], Mapping[str, Any]] = _nothing
+    inputs: Callable[[np.random.Generator], Mapping[str, Any]] = no_inputs
     aspect: SamplerAspect = "distribution"
     pdf: str = ""
     integrand: Callable[..., Any] | None = None
@@ -254,7 +252,7 @@ class Sampler:
             if first is not None and not found.ambiguous and first.confidence >= SURE:
                 text = slip(language, first.name, hints)
                 if first.detail and first.name not in hints and first.name not in PLAIN:
-                    text = f"{first.message.rstrip('.')} ({first.detail})"
+                    text = f"{first.message.rstrip('.')} ({translated(language, first.detail)})"
                 return first.name, text, first.confidence
             ratio = claimed[right > 0] / right[right > 0]
             steady = np.ptp(ratio) <= self.rtol * abs(ratio).max()

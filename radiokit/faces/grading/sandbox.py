@@ -100,7 +100,7 @@ class Sandbox:
         self._loaded: Result | None = None
         self._budgets: list[_Budget] = []
         self._apart = self._branched = False
-        self._output = ""
+        self._end = self._output = ""
 
     def __enter__(self) -> Sandbox:
         return self
@@ -199,7 +199,7 @@ class Sandbox:
         )
 
     def facts(self, function: str) -> Result:
-        """Ask what a function says of itself: ``facts`` has callable, pdf, sample, transmissive, eta."""
+        """Ask what a function says of itself: callable, pdf, sample, transmissive, eta and parameters."""
         return self._called({"function": function, "facts": True}, (), None)
 
     @contextmanager
@@ -217,7 +217,9 @@ class Sandbox:
     def apart(self) -> Iterator[None]:
         """Let the calls inside begin from the submission as it was loaded; what they change is forgotten.
 
-        They take place in a copy of the process. What they write into files stays.
+        They take place in a copy of the process, and what that starts ends with it. What they write into
+        files stays. The copy runs the submission's own code: one that is hostile can keep more, to nobody's
+        harm but its own.
         """
         self._apart = True
         try:
@@ -239,14 +241,19 @@ class Sandbox:
         began = time.monotonic()
         seconds = self.limits.seconds if timeout is None else timeout
         late = f"took longer than {seconds:g} s"
-        if self._child is None or self._loaded is None:
-            failed = self._loaded is not None and bool(self._loaded.error)  # then it would fail again
-            loaded = self._loaded if failed and self._loaded is not None else self.load()
-            if loaded.error:
-                return Result(error=f"could not be loaded: it {loaded.error}", protections=self._protections)
-        if self._apart and not self._branched:
+        for last in (False, True):
+            if self._child is None or self._loaded is None:
+                failed = self._loaded is not None and bool(self._loaded.error)  # then it would fail again
+                loaded = self._loaded if failed and self._loaded is not None else self.load()
+                if loaded.error:
+                    error = f"could not be loaded: it {loaded.error}"
+                    return Result(error=error, protections=self._protections)
+            if self._branched or not self._apart:
+                break
             branch = self._branch(True)
-            if branch.error:
+            if branch.ok:
+                break
+            if last:  # the first time, it may be what earlier calls have left
                 return branch
         for budget in self._budgets:
             if budget.left < seconds:
@@ -261,19 +268,24 @@ class Sandbox:
 
     def _branch(self, begins: bool) -> Result:
         """Begin or end a copy of the process that the submission was loaded in."""
-        result = self._request({"branch": begins}, (), BRANCHING, "did not answer")
+        if begins:
+            self._end = secrets.token_hex(8)
+        token = "" if begins else self._end
+        result = self._request({"branch": begins, "end": self._end}, (), BRANCHING, "did not answer", token)
         if result.error:  # the next call loads it anew
             self.close()
         self._branched = begins and result.ok
         return result
 
-    def _request(self, request: dict[str, Any], arrays: Sequence[Array], seconds: float, late: str) -> Result:
+    def _request(
+        self, request: dict[str, Any], arrays: Sequence[Array], seconds: float, late: str, token: str = ""
+    ) -> Result:
         """Ask the child, and return what becomes of it."""
         began = time.monotonic()
         found: dict[str, Any] = {}
         try:
             child = self._child = self._child or self._started()
-            token = secrets.token_hex(8)
+            token = token or secrets.token_hex(8)
             asked = pack({"id": token, "file": self._name, **request}, arrays)
             header, values = child.exchange(asked, seconds)
             found = judged(header, values, token, outputs=request.get("outputs", 1), folder=child.folder)

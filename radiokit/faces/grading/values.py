@@ -16,10 +16,12 @@ from radiokit.faces.diagnosis.result import Diagnosis
 from radiokit.faces.grading.arguments import argument_mistakes
 from radiokit.faces.grading.asking import asked, close, fitted, is_extreme, is_right, out_of_range
 from radiokit.faces.grading.evidence import clause, hint_for, joined, rows, wrong_at
+from radiokit.faces.grading.exact import Reference, as_function, no_inputs
 from radiokit.faces.grading.finding import Callee, Finding
 from radiokit.faces.grading.given import check_functions, check_shares, drawn, is_within, numbers, own, truth
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.result import Result
+from radiokit.faces.grading.russian import did
 from radiokit.faces.grading.words import say, sentence
 from radiokit.facts.errors import ParameterError
 
@@ -46,11 +48,13 @@ class Values:
 
     Parameters
     ----------
-    inputs : callable
+    reference : callable, Case or array_like
+        ``reference(**inputs)`` gives what is right, an array of one number or vector for each input; or a
+        closed-form case, whose exact value is right; or what is right itself.
+    inputs : callable, optional
         From a generator to the inputs by name, arrays whose first axes agree, or numbers. The names are those
-        of the function's parameters, and stand in their order.
-    reference : callable
-        ``reference(**inputs)`` gives what is right, an array of one number or vector for each input.
+        of the function's parameters, and stand in their order. Without it the function has none, and one
+        number is asked for.
     rtol : float
         The relative error that is allowed, in [0, 1).
     ulps : float
@@ -74,10 +78,14 @@ class Values:
     ------
     ParameterError
         When a number is out of its range.
+
+    >>> import radiokit as rk
+    >>> Values(reference=rk.case("lambert-under-square-of-2m")).rtol
+    1e-09
     """
 
-    inputs: Callable[[np.random.Generator], Mapping[str, Any]]
-    reference: Callable[..., Any]
+    reference: Reference
+    inputs: Callable[[np.random.Generator], Mapping[str, Any]] = no_inputs
     rtol: float = 1e-9
     ulps: float = 0.0
     atol: float = 0.0
@@ -88,7 +96,8 @@ class Values:
     terms: Callable[..., Any] | None = None
 
     def __post_init__(self) -> None:
-        functions = ("inputs", "reference", "context", "terms")
+        as_function(self.reference)
+        functions = ("inputs", "context", "terms")
         check_functions({name: getattr(self, name) for name in functions}, self.variants)
         if not is_within(self.rtol, 0, 1) or self.rtol == 1:
             raise ParameterError("rtol", self.rtol, "a number in [0, 1)")
@@ -122,7 +131,7 @@ class Values:
         shown: bool,
     ) -> Finding:
         given = drawn(self.inputs, rng)
-        right = truth(self.reference, given)
+        right = truth(self._right, given)
         seed = int(rng.integers(1 << 32))
         allowed = self.allowed(right, self.rtol)
         first, mode = asked(callee, given, right, seed, allowed)
@@ -144,6 +153,10 @@ class Values:
         if mode == "batch":
             return Finding(share=1.0, text=say(language, "full"))
         return Finding(share=1.0, text=say(language, "full-one-by-one"))
+
+    @property
+    def _right(self) -> Callable[..., Any]:
+        return as_function(self.reference)
 
     def allowed(self, right: Array, rtol: float) -> Array:
         """Return the absolute errors that are allowed, if the relative one is ``rtol``."""
@@ -240,13 +253,11 @@ class Values:
             name: numbers(own(f"variants[{name!r}]", variant, **given), f"variants[{name!r}]")
             for name, variant in self.variants.items()
         }
-        usual = (*CATALOGUE, *argument_mistakes(self.reference, given, right))
+        usual = (*CATALOGUE, *argument_mistakes(self._right, given, right))
 
         def reference(**inputs: Any) -> Any:
             try:  # out of its domain it may give anything, which then explains nothing
-                values = np.asarray(
-                    self.reference(**{n: inputs.get(n, given[n]) for n in given}), dtype=float
-                )
+                values = np.asarray(self._right(**{n: inputs.get(n, given[n]) for n in given}), dtype=float)
             except Exception:
                 return np.full(size, math.nan)
             return values if values.shape == right.shape else np.full(size, math.nan)
@@ -277,7 +288,7 @@ class Values:
             variants={name: values[lit] for name, values in others.items()},
             language=language,
             rtol=rtol,
-            catalogue=(*CATALOGUE, *argument_mistakes(self.reference, lit_given, right[lit])),
+            catalogue=(*CATALOGUE, *argument_mistakes(self._right, lit_given, right[lit])),
         )
         return partly if partly.suspicions else found
 
@@ -290,7 +301,7 @@ def _raised(
     hints: Mapping[str, Mapping[str, str]],
 ) -> Finding:
     """Say what a function did instead of answering, and why if its inputs leave the range of numbers."""
-    text = say(language, "call", function=name, error=result.error)
+    text = did(language, name, result.error)
     if result.raised in ("OverflowError", "ZeroDivisionError") and any(map(is_extreme, given.values())):
         hint = hints.get("out-of-range", {}).get(language, "")
         text = f"{text}. {sentence(hint)}" if hint else text

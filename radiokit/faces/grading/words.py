@@ -70,6 +70,10 @@ SENTENCES: Mapping[str, Words] = {
         "en": "returns an array of shape {shape} where {expected} is right",
         "ru": "возвращает массив формы {shape}, а нужна форма {expected}",
     },
+    "one-number": {
+        "en": "returns an array of shape {shape} where one number is right",
+        "ru": "возвращает массив формы {shape}, а нужно одно число",
+    },
     "complex": {
         "en": "returns complex numbers, and real ones are asked for",
         "ru": "возвращает комплексные числа, а нужны вещественные",
@@ -87,6 +91,8 @@ SENTENCES: Mapping[str, Words] = {
         "en": "at {inputs} it gives {value}",
         "ru": "при {inputs} получено {value}",
     },
+    "number-shown": {"en": "it gives {value}, right is {right}", "ru": "получено {value}, верно {right}"},
+    "number-hidden": {"en": "it gives {value}", "ru": "получено {value}"},
     "number": {"en": "input no. {row}", "ru": "наборе данных № {row}"},
     "both": {"en": "two mistakes at once: {names}", "ru": "две ошибки сразу: {names}"},
     "one-of": {"en": "one of these: {names}", "ru": "одно из: {names}"},

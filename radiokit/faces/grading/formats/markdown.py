@@ -11,11 +11,15 @@ from radiokit.faces.grading.grades import Grade
 __all__ = ["to_markdown"]
 
 _SIGNS = {"full": "✅", "partial": "🟡", "none": "❌", "pending": "⏳"}
+_MENTION = re.compile(r"(?<!\w)@(?=\w)|#(?=\d)")
+_JOINER = "\u2060"
 _SPECIAL = re.compile(r"([\\`*_\[\]#|~$<>&]|(?<=:)/|(?<=www)\.)")
 
 
 def to_markdown(grade: Grade, *, reveal: bool = False) -> str:
     """Return a grade as Markdown, a table for each question; no text in it becomes markup or a link.
+
+    Nor does one notify anybody, as ``@name`` and ``#1`` do on GitHub: an unseen joiner follows the sign.
 
     Parameters
     ----------
@@ -50,4 +54,4 @@ def to_markdown(grade: Grade, *, reveal: bool = False) -> str:
 
 def _escape(text: str) -> str:
     """Return one line in which no letter means anything but itself."""
-    return _SPECIAL.sub(r"\\\1", " ".join(text.split()))
+    return _SPECIAL.sub(r"\\\1", _MENTION.sub(rf"\g<0>{_JOINER}", " ".join(text.split())))

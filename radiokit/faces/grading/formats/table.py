@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 from collections.abc import Iterable
 
 from radiokit.faces.grading.formats.shown import number, plain
@@ -12,6 +13,11 @@ from radiokit.facts.errors import ParameterError
 
 __all__ = ["to_csv"]
 
+_FORMULA = re.compile(
+    r"""(^|[;,|]["'\s]*(?![+-]?(?:[\d.]+(?:e[+-]?\d+)?|inf|nan)(?:[\s;,|)\]}]|$)))(?=[=+@-]|[＝＋＠－])""",
+    re.IGNORECASE,
+)
+"""Where a formula may begin, in the letters of wide fonts too; a number within a text is none."""
 _DIALECTS = {"": ("", ",", "."), "en": ("\ufeff", ",", "."), "ru": ("\ufeff", ";", ",")}
 
 
@@ -20,7 +26,7 @@ def to_csv(grades: Iterable[Grade], *, excel: str = "") -> str:
 
     The columns: the student, the total and what could be earned, the score of each question, the diagnoses,
     and a note on what a person should look at. A text that a spreadsheet would run as a formula gets an
-    apostrophe before it.
+    apostrophe before it; so does a part of one, as another language's spreadsheet cuts cells elsewhere.
 
     Parameters
     ----------
@@ -72,5 +78,9 @@ def _note(grade: Grade) -> str:
 
 
 def _text(text: str) -> str:
-    """Return a text cell that no spreadsheet takes for a formula."""
-    return f"'{text}" if text.startswith(("=", "+", "-", "@")) else text
+    """Return a text cell that no spreadsheet takes for a formula, wherever it cuts.
+
+    >>> _text("=1+1"), _text("a;=1+1"), _text("a (3, -4)")
+    ("'=1+1", "a;'=1+1", 'a (3, -4)')
+    """
+    return _FORMULA.sub(r"\1'", text)

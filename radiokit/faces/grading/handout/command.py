@@ -164,7 +164,7 @@ def _show(found: Any, language: str, json: bool) -> None:
         return
     rows = [
         (
-            question.signature,
+            "\n".join([question.signature, *question.also]),
             question.title[language],
             f"{question.points:g}",
             ", ".join(f"{part.title[language]} ({question.worth(part):g})" for part in question.parts),
@@ -182,6 +182,7 @@ def _data(found: Any) -> dict[str, Any]:
         "questions": [
             {
                 "signature": question.signature,
+                "also": list(question.also),
                 "title": dict(question.title),
                 "points": question.points,
                 "parts": [

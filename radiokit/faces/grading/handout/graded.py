@@ -1,7 +1,9 @@
 """Graded: gives an nbgrader submission's points in nbgrader's own process, whatever its kernel has shown.
 
 ``nbgrader_config.py``, as `radiokit assignment --nbgrader` writes it, puts it behind nbgrader's ``Execute``.
-It takes the submission from its file and grades it in radiokit's sandbox, far from the points.
+It takes the submission from its file and grades it in radiokit's sandbox, far from the points. What a test
+cell asks for is read from nbgrader's records of the release, never from what was handed in: an assignment's
+file is run here.
 The kernel still runs a submission's other cells as the user who grades, as nbgrader always does: what
 that user may write, a submission may, too.
 """
@@ -22,7 +24,13 @@ __all__ = ["graded"]
 
 def graded(notebook: Any, resources: Any) -> tuple[Any, Any]:
     """Put the points and their reasons into a handout's test cells; other cells are left as they are."""
-    tests = [(cell, *call) for cell in notebook.cells if (call := _asked(cell)) is not None]
+    released = _released(resources["nbgrader"])
+    tests = [
+        (cell, *call)
+        for cell in notebook.cells
+        if cell.cell_type == "code" and cell.metadata.get("nbgrader", {}).get("grade")
+        if (call := _asked(released.get(cell.metadata["nbgrader"].get("grade_id"), ""))) is not None
+    ]
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "submission.ipynb")
         sources = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
@@ -47,12 +55,19 @@ def _key(given: dict[str, Any]) -> tuple[str, str]:
     return given["assignment"], given["language"]
 
 
-def _asked(cell: Any) -> tuple[str, dict[str, Any]] | None:
-    """Return the question that a test cell asks for, and how; None for any other cell."""
-    if cell.cell_type != "code" or not cell.metadata.get("nbgrader", {}).get("grade"):
-        return None
+def _released(about: Any) -> dict[str, str]:
+    """Return the sources of the cells that students may not change, as they were released, by their ids."""
+    from nbgrader.api import Gradebook
+
+    with Gradebook(about["db_url"]) as gradebook:
+        cells = gradebook.find_notebook(about["notebook"], about["assignment"]).source_cells
+        return {cell.name: cell.source for cell in cells if cell.locked and cell.cell_type == "code"}
+
+
+def _asked(source: str) -> tuple[str, dict[str, Any]] | None:
+    """Return the question that a released test cell asks for, and how; None for any other cell."""
     try:
-        last = ast.parse(cell.source).body[-1]
+        last = ast.parse(source).body[-1]
     except (SyntaxError, IndexError):
         return None
     call = last.value if isinstance(last, ast.Expr) else None
