@@ -65,6 +65,7 @@ FAULTS = {  # what is replaced, what with, and what must be said of it
     "complex": (LAMP, "return np.sqrt(theta - 0.7 + 0j)", "reference gives complex numbers"),
     "shorter": (LAMP, "return theta[1:]", "reference gives an array of shape (7,) for 8 inputs"),
     "one number": (LAMP, "return 5.0", "reference gives 5 for 8 inputs"),
+    "constant": (JUDGE, "reference=3.0", "reference gives 3 for 8 inputs"),
     "no return": (LAMP, "pass", "reference gives None: it must give real numbers"),
     "random": (LAMP, "return theta + np.random.default_rng().random()", "it must depend on them alone"),
     "too exact": (
@@ -104,6 +105,11 @@ FAULTS = {  # what is replaced, what with, and what must be said of it
         "directions, 0)",
         "density gives an array of shape (4, 3)",
     ),
+    "density's name": (
+        "density=cosine",
+        'density=cosine, pdf="drwa", aspect="density"',
+        "did you mean 'draw'?",
+    ),
     "u missing": ('"draw(u)"', '"draw(u, n)"', "the parameters of draw(u, n) after u are (n)"),
 }
 UNLOADABLE = {
@@ -121,7 +127,7 @@ UNLOADABLE = {
     "credit's share": (JUDGE, JUDGE + ', credit={"doubled": "0.5"}', "shares, numbers in [0, 1]"),
     "loose": (JUDGE, JUDGE + ", loose={1e-9: 0.5}", "errors larger than rtol = 1e-05"),
     "rtol": ("rtol=1e-5", 'rtol="1e-5"', "light.py, line 20: rtol = '1e-5' is not allowed"),
-    "reference": (JUDGE, "reference=3.0", "reference = 3.0 is not allowed: it must be a function"),
+    "reference": (JUDGE, 'reference="lamp"', "reference = 'lamp' is not allowed: it must be a function"),
     "points": ("points=2", 'points="2"', "lamp: points = '2' is not allowed"),
     "language": ('text=both("Q")', 'text={"en": "Q"}', "lamp: text = {'en': 'Q'} is not allowed"),
     "star": ('"lamp(intensity, distance, theta)"', '"lamp(*inputs)"', "without * and **"),

@@ -19,7 +19,7 @@ from radiokit.faces.grading.question import Part, Question
 from radiokit.faces.grading.runs import exact
 from radiokit.faces.grading.sampler import Sampler, called
 from radiokit.faces.grading.values import Values
-from radiokit.facts.errors import AssignmentError
+from radiokit.facts.errors import AssignmentError, suggestion
 
 __all__ = ["faults", "rehearse", "rehearsed"]
 
@@ -58,12 +58,19 @@ def rehearsed(target: str | Path | Assignment) -> Assignment:
 
 def faults(assignment: Assignment, *, student: str = "", secret: str = "") -> Iterator[AssignmentError]:
     """Yield what is wrong with an assignment, at most once for each part; arguments as of `rehearse`."""
+    asked = [name for question in assignment.questions for name in question.functions]
     for question in assignment.questions:
         for part in question.parts:
             rng = student_rng(assignment, question, part, student=student, secret=secret)
             try:
                 with np.errstate(all="ignore"):
                     _tried(part, question, rng)
+                pdf = part.judge.pdf if isinstance(part.judge, Sampler) else ""
+                if pdf and pdf not in asked:
+                    guess = suggestion(pdf, asked) or "; also=(...) of a question asks for it"
+                    raise AssignmentError(
+                        f"pdf = {pdf!r} is not allowed: it must be a function that is asked for{guess}"
+                    )
             except AssignmentError as error:
                 yield AssignmentError(
                     f"{assignment.name}: question {question.name}, part {part.name}: {error}",

@@ -101,5 +101,5 @@ def notes_of(grade: Grade, question: QuestionGrade | None = None, *, reveal: boo
     if question is not None:
         told = phrase(grade.language, "review")
         cause = f" ({question.review})" if reveal and question.review not in grade.problems else ""
-        return [f"{told.rstrip('.')}{cause}." if cause else told] if question.review else []
+        return [told + cause] if question.review else []
     return [*grade.problems, *([] if grade.complete else [phrase(grade.language, "incomplete")])]
