@@ -13,11 +13,12 @@ import pytest
 
 from radiokit.bsdfs import GGX, BlinnPhong, Lambert, Phong, PhongOriginal
 from radiokit.contracts.blackbox import as_bsdf
-from radiokit.faces.grading import Laws, Limits, Sandbox, lawtexts
+from radiokit.faces.grading import Laws, Limits, Sandbox
 from radiokit.faces.grading import laws as module
 from radiokit.faces.grading.grader import Isolated
 from radiokit.faces.grading.here import Here
-from radiokit.faces.grading.lawtexts import LAW_SENTENCES, share_of_light
+from radiokit.faces.grading.lawtexts import share_of_light
+from radiokit.faces.grading.lawwords import LAW_NAMES, LAW_SENTENCES
 from radiokit.faces.grading.signature import listed, renamed
 from radiokit.facts.errors import ParameterError
 
@@ -410,7 +411,7 @@ def test_parameters_are_taken_by_position_only_where_they_fit(function, given, p
 
 
 def test_every_sentence_is_there_in_both_languages_with_the_same_blanks():
-    for texts in (*LAW_SENTENCES.values(), *lawtexts.LAW_NAMES.values()):
+    for texts in (*LAW_SENTENCES.values(), *LAW_NAMES.values()):
         assert set(texts) == {"en", "ru"}
         blanks = [
             sorted({name.split("[")[0] for _, name, _, _ in string.Formatter().parse(text) if name})

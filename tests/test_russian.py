@@ -67,7 +67,7 @@ def sentences(tree: ast.AST) -> Iterator[str]:
                 each.id for target in node.targets for each in ast.walk(target) if isinstance(each, ast.Name)
             }
             values = node.value.elts if isinstance(node.value, ast.Tuple) else [node.value]
-            if "late" in named:
+            if named & {"late", "error"}:
                 yield from (text for value in values for text in texts(value))
         elif isinstance(node, ast.FunctionDef) and node.name in ("_ending", "told"):
             for each in ast.walk(node):

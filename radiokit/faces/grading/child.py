@@ -65,17 +65,19 @@ class _Child:
         self._finder = parts["imports"].Finder()
         self._requests, self._results = requests, results
         self._pack, self._text = self._protocol.pack, self._protocol.plain_text
-        self._read, self._write = os.read, os.write
+        self._read, self._write, self._blocking = os.read, os.write, os.set_blocking
         self._fork, self._wait, self._exit = os.fork, os.waitpid, os._exit
         self._submission: Any = None
 
     def send(self, header: dict[str, Any], arrays: Any = ()) -> None:
         data = memoryview(self._pack(header, arrays))
+        self._blocking(self._results, True)
         while data:
             data = data[self._write(self._results, data) :]
 
     def serve(self) -> None:
         while True:
+            self._blocking(self._requests, True)  # a submission may have changed it, in a copy too
             whole = self._protocol.Assembler(limit=1 << 40)  # the sandbox is trusted
             while whole.wanted:
                 data = self._read(self._requests, min(whole.wanted, 1 << 20))

@@ -9,12 +9,9 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from radiokit.faces.diagnosis.catalogue import CATALOGUE
-from radiokit.faces.diagnosis.diagnose import diagnose
-from radiokit.faces.diagnosis.result import Suspicion
 from radiokit.faces.grading.exact import Reference, as_function, no_inputs
 from radiokit.faces.grading.finding import Callee, Finding
-from radiokit.faces.grading.given import check_functions, check_shares, number, own
+from radiokit.faces.grading.given import check_functions, check_shares, number
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.runs import FLOOR, Runs, UnusableError, gather
 from radiokit.faces.grading.runtests import (
@@ -28,18 +25,13 @@ from radiokit.faces.grading.runtests import (
     rate,
     rate_slip,
 )
-from radiokit.faces.grading.russian import translated
-from radiokit.faces.grading.samplewords import PLAIN, line, slip, tell
-from radiokit.faces.grading.words import say
+from radiokit.faces.grading.samplewords import line, slip, tell
+from radiokit.faces.grading.suspects import behind_means
 from radiokit.facts.errors import ParameterError
 
 __all__ = ["Aspect", "Estimator"]
 
 Aspect = Literal["value", "error", "efficiency"]
-
-SURE = 0.5
-WIDER = 1.25
-"""What the errors are multiplied by before a misconception is looked for: few seeds give them."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -279,59 +271,12 @@ class Estimator:
         if not shown:
             ratio = f"{float(np.mean(runs.means / runs.right)):.4g}"
             seen = tell(language, "biased", runs=runs.values.size, ratio=ratio)
-        for suspicions, ambiguous in self._suspected(runs, language):
-            first = suspicions[0]
-            if first.confidence < SURE or ambiguous:
-                names = " / ".join(slip(language, each.name, hints).rstrip(".") for each in suspicions[:2])
-                return [say(language, "one-of", names=names), seen], first.name, first.confidence
-            why = slip(language, first.name, hints)
-            if first.detail and first.name not in hints and first.name not in PLAIN:
-                why = f"{first.message.rstrip('.')} ({translated(language, first.detail)})"
-            return [why, seen], first.name, first.confidence
-        return [seen], "", 0.0
-
-    def _suspected(self, runs: Runs, language: str) -> Iterator[tuple[tuple[Suspicion, ...], bool]]:
-        """Yield what explains the means: first among this question's variants, then in the catalogue."""
-        known = _numbers(runs, self.context)
-        others = {
-            name: np.array([number(variant, inputs, f"variants[{name!r}]") for inputs in runs.inputs])
-            for name, variant in self.variants.items()
-        }
-        error = WIDER * np.sqrt(runs.variances / runs.values.shape[1]) + runs.floor / 10
-
-        exact = as_function(self.reference)
-
-        def reference(**changed: Any) -> Array:
-            try:  # out of its domain it may do anything, which then explains nothing
-                return np.array(
-                    [
-                        float(exact(**{n: changed[n][k] if n in changed else v for n, v in each.items()}))
-                        for k, each in enumerate(runs.inputs)
-                    ]
-                )
-            except Exception:
-                return np.full(len(runs.inputs), math.nan)
-
-        for variants, catalogue in ((others, ()), (reference, CATALOGUE)):
-            if variants:
-                found = diagnose(
-                    runs.means,
-                    runs.right,
-                    inputs=known,
-                    variants=variants,
-                    error=error,
-                    language=language,
-                    catalogue=catalogue,
-                )
-                if found.suspicions:
-                    yield found.suspicions, bool(found.ambiguous)
-
-
-def _numbers(runs: Runs, context: Callable[..., Mapping[str, Any]] | None) -> dict[str, Array]:
-    """Return the inputs that are numbers, one for each group, with those of the context."""
-    rows = [
-        {**inputs, **(own("context", context, **inputs) if context is not None else {}), "samples": count}
-        for inputs, count in zip(runs.inputs, runs.samples, strict=True)
-    ]
-    names = [name for name, value in rows[0].items() if np.ndim(value) == 0]
-    return {name: np.array([float(row[name]) for row in rows]) for name in names}
+        why, name, sure = behind_means(
+            runs,
+            reference=as_function(self.reference),
+            variants=self.variants,
+            context=self.context,
+            language=language,
+            hints=hints,
+        )
+        return [*filter(None, [why]), seen], name, sure

@@ -13,7 +13,8 @@ from radiokit.checks.judge import check
 from radiokit.contracts.bsdf import BSDF
 from radiokit.faces.grading.finding import Callee, Finding
 from radiokit.faces.grading.given import check_functions, own, shown
-from radiokit.faces.grading.lawtexts import failed, found, law_name, remarks, share_of_light, tell
+from radiokit.faces.grading.lawtexts import failed, found, remarks, share_of_light
+from radiokit.faces.grading.lawwords import law_name, tell
 from radiokit.faces.grading.likeness import Likeness, compared
 from radiokit.faces.grading.remote import is_pairwise
 from radiokit.faces.grading.words import say, sentence

@@ -115,6 +115,8 @@ OUTCOMES: tuple[tuple[str, str], ...] = (
     ),
     ("an array's shape is not of lengths", "форма массива состоит не из длин"),
     ("it answers what was not asked", "это ответ на другой запрос"),
+    ("an empty array's shape is too large", "форма пустого массива слишком велика"),
+    ("its refractive index is no number", "показатель преломления — не число"),
     ("its problems are none", "список ошибок испорчен"),
     ("its facts are none", "сведения о функции испорчены"),
     ("it has neither values nor an error", "в нём нет ни значений, ни ошибки"),

@@ -10,8 +10,6 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from radiokit.faces.diagnosis.catalogue import CATALOGUE
-from radiokit.faces.diagnosis.diagnose import diagnose
 from radiokit.faces.grading.directions import ASKED, UNIFORM, integral, probes, uniform_variance
 from radiokit.faces.grading.draws import Draws, Fit, cells_of_density, sampled, u_slip
 from radiokit.faces.grading.exact import no_inputs
@@ -20,8 +18,8 @@ from radiokit.faces.grading.given import check_functions, check_shares, drawn, n
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.runs import UnusableError
 from radiokit.faces.grading.runtests import ROUNDS, each_level
-from radiokit.faces.grading.russian import translated
-from radiokit.faces.grading.samplewords import PLAIN, line, slip, tell
+from radiokit.faces.grading.samplewords import line, slip, tell
+from radiokit.faces.grading.suspects import behind_density
 from radiokit.facts.errors import AssignmentError, ParameterError
 from radiokit.measure.statistics import bernstein_test
 
@@ -31,9 +29,6 @@ SamplerAspect = Literal["distribution", "density", "efficiency"]
 
 FITS = 1e-3
 """The p-value from which samples are said to follow another density than the one that is asked for."""
-
-SURE = 0.5
-"""From which confidence on a misconception is named."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -216,49 +211,21 @@ class Sampler:
             count=ASKED,
             integral=f"{integral(draws.claimed, cells.width):.4g}",
         )
-        name, text, confidence = self._density_slip(draws, directions, claimed, right, hints)
-        return self._found(text, told, name=name, confidence=confidence)
-
-    def _density_slip(
-        self,
-        draws: Draws,
-        directions: Array,
-        claimed: Array,
-        right: Array,
-        hints: Mapping[str, Mapping[str, str]],
-    ) -> tuple[str, str, float]:
-        """Return the misconception behind a wrong density, what is said of it, and how sure that is.
-
-        Those that the question knows come first, then a wrong factor, then the whole catalogue.
-        """
-        language = draws.language
-        inputs = {name: value for name, value in draws.inputs.items() if value.ndim == 0}
         known = {"uniform-instead": _uniform, **self.variants}
-        others = {
-            name: called(each, directions, draws.inputs, f"variants[{name!r}]")
-            for name, each in known.items()
-        }
-        for variants, catalogue in ((others, ()), (None, CATALOGUE)):
-            found = diagnose(
-                claimed,
-                right,
-                inputs={**inputs, "cosine": directions[:, 2]},
-                variants=variants,
-                language=language,
-                catalogue=catalogue,
-                rtol=self.rtol,
-            )
-            first = found.first
-            if first is not None and not found.ambiguous and first.confidence >= SURE:
-                text = slip(language, first.name, hints)
-                if first.detail and first.name not in hints and first.name not in PLAIN:
-                    text = f"{first.message.rstrip('.')} ({translated(language, first.detail)})"
-                return first.name, text, first.confidence
-            ratio = claimed[right > 0] / right[right > 0]
-            steady = np.ptp(ratio) <= self.rtol * abs(ratio).max()
-            if steady and abs(ratio[0] - 1) > self.rtol:
-                return "pdf-not-normalised", slip(language, "pdf-not-normalised", hints), 1.0
-        return "", "", 0.0
+        numbers = {key: value for key, value in draws.inputs.items() if value.ndim == 0}
+        text, name, confidence = behind_density(
+            claimed,
+            right,
+            inputs={**numbers, "cosine": directions[:, 2]},
+            variants={
+                key: called(each, directions, draws.inputs, f"variants[{key!r}]")
+                for key, each in known.items()
+            },
+            rtol=self.rtol,
+            language=language,
+            hints=hints,
+        )
+        return self._found(text, told, name=name, confidence=confidence)
 
     def _efficiency(
         self, draws: Draws, rng: np.random.Generator, hints: Mapping[str, Mapping[str, str]]
