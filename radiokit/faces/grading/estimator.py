@@ -11,6 +11,7 @@ import numpy as np
 
 from radiokit.faces.grading.exact import Reference, as_function, no_inputs
 from radiokit.faces.grading.finding import Callee, Finding
+from radiokit.faces.grading.given import check_functions, check_shares, number
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.runs import FLOOR, Runs, UnusableError, gather
 from radiokit.faces.grading.runtests import (
@@ -122,8 +123,9 @@ class Estimator:
             value = getattr(self, name)
             if type(value) is not int or value < least:
                 raise ParameterError(name, value, f"an integer of at least {least}")
-        if not all(0 <= share <= 1 for share in self.credit.values()):
-            raise ParameterError("credit", self.credit, "shares in [0, 1]")
+        functions = ("inputs", "context", "budget", "uniform")
+        check_functions({name: getattr(self, name) for name in functions}, self.variants)
+        check_shares("credit", self.credit)
         if self.aspect == "efficiency" and (self.budget is None or self.uniform is None):
             raise ParameterError("budget, uniform", None, "variances, where efficiency is judged")
         for name in ("noise", "slowest"):
@@ -187,7 +189,8 @@ class Estimator:
 
     def _given(self, function: Callable[..., float] | None, runs: Runs) -> Array:
         assert function is not None
-        return np.array([float(function(**inputs)) for inputs in runs.inputs])
+        what = "budget" if function is self.budget else "uniform"
+        return np.array([number(function, inputs, what) for inputs in runs.inputs])
 
     def _right(self, runs: Runs, language: str, measured: dict[str, float]) -> Finding:
         if self.aspect == "efficiency":

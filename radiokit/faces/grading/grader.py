@@ -20,7 +20,7 @@ from radiokit.faces.grading.result import Result
 from radiokit.faces.grading.russian import told, translated
 from radiokit.faces.grading.sandbox import Sandbox
 from radiokit.faces.grading.words import checked_language, say
-from radiokit.facts.errors import CallableError, TargetError
+from radiokit.facts.errors import AssignmentError, CallableError, TargetError
 
 __all__ = ["Isolated", "grade"]
 
@@ -175,6 +175,9 @@ def _judged(
                 )
         except (CallableError, TargetError) as error:
             finding = Finding(share=0.0, text=told(language, error))
+        except AssignmentError as error:  # the student is told no more, for it may tell what is right
+            review = plain_text(f"the assignment is at fault, part {part.name}: {error}")
+            finding = Finding(share=0.0, text=say(language, "assignment-failed"))
         except Exception as error:  # no answer may stop the grading: a person will look
             review = plain_text(f"{type(error).__name__}: {error}")
             finding = Finding(share=0.0, text=say(language, "judge-failed", error=review))

@@ -20,7 +20,7 @@ from radiokit.faces.grading.protocol import plain_text
 from radiokit.faces.grading.question import Question
 from radiokit.faces.grading.russian import told, translated
 from radiokit.faces.grading.words import checked_language, say
-from radiokit.facts.errors import CallableError, TargetError
+from radiokit.facts.errors import AssignmentError, CallableError, TargetError
 
 __all__ = ["Check", "Checked", "practice"]
 
@@ -121,6 +121,9 @@ class Check:
                 )
             except (CallableError, TargetError) as error:
                 finding = Finding(share=0.0, text=told(self._language, error))
+            except AssignmentError as error:
+                text = f"{say(self._language, 'assignment-failed')} ({plain_text(error)})"
+                finding = Finding(share=0.0, text=text)
             except Exception as error:  # as in the grader: no answer may break the judges
                 problem = plain_text(f"{type(error).__name__}: {error}")
                 finding = Finding(share=0.0, text=say(self._language, "judge-failed", error=problem))

@@ -14,15 +14,16 @@ from radiokit.faces.grading.directions import ASKED, UNIFORM, integral, probes, 
 from radiokit.faces.grading.draws import Draws, Fit, cells_of_density, sampled, u_slip
 from radiokit.faces.grading.exact import no_inputs
 from radiokit.faces.grading.finding import Callee, Finding
+from radiokit.faces.grading.given import check_functions, check_shares, drawn, numbers, own, shown
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.runs import UnusableError
 from radiokit.faces.grading.runtests import ROUNDS, each_level
 from radiokit.faces.grading.samplewords import line, slip, tell
 from radiokit.faces.grading.suspects import behind_density
-from radiokit.facts.errors import ParameterError
+from radiokit.facts.errors import AssignmentError, ParameterError
 from radiokit.measure.statistics import bernstein_test
 
-__all__ = ["Sampler", "SamplerAspect"]
+__all__ = ["Sampler", "SamplerAspect", "called"]
 
 SamplerAspect = Literal["distribution", "density", "efficiency"]
 
@@ -113,8 +114,9 @@ class Sampler:
         for name, low, high in (("factor", 1, math.inf), ("rtol", 0, 0.1), ("slowest", 0, math.inf)):
             if not low < getattr(self, name) < high:
                 raise ParameterError(name, getattr(self, name), f"above {low} and below {high}")
-        if not all(0 <= share <= 1 for share in self.credit.values()):
-            raise ParameterError("credit", self.credit, "shares in [0, 1]")
+        functions = {name: getattr(self, name) for name in ("density", "inputs", "integrand")}
+        check_functions(functions, self.variants)
+        check_shares("credit", self.credit)
 
     def judge(
         self,
@@ -133,7 +135,7 @@ class Sampler:
         }
         found = Finding(share=1.0, text="")
         for _ in range(self.cases):
-            given = {name: np.asarray(value) for name, value in self.inputs(rng).items()}
+            given = drawn(self.inputs, rng, rows=False)
             draws = Draws(callee, self.pdf, given, language)
             try:
                 found = ways[self.aspect](draws, rng, hints)
@@ -171,7 +173,7 @@ class Sampler:
         if own:
             told.append(tell(language, "consistent", function=self.pdf))
         for name, variant in {**self.variants, "uniform-instead": _uniform}.items():
-            density = partial(_called, variant, given=draws.inputs)
+            density = partial(called, variant, given=draws.inputs, what=f"variants[{name!r}]")
             if min(fit.p_values(density).values()) > FITS:
                 return self._found(slip(language, name, hints), *told, name=name)
         if fit.never() > 0.1:
@@ -216,7 +218,10 @@ class Sampler:
             claimed,
             right,
             inputs={**numbers, "cosine": directions[:, 2]},
-            variants={key: _called(each, directions, given=draws.inputs) for key, each in known.items()},
+            variants={
+                key: called(each, directions, draws.inputs, f"variants[{key!r}]")
+                for key, each in known.items()
+            },
             rtol=self.rtol,
             language=language,
             hints=hints,
@@ -228,7 +233,7 @@ class Sampler:
     ) -> Finding:
         assert self.integrand is not None
         language = draws.language
-        integrand = partial(_called, self.integrand, given=draws.inputs)
+        integrand = partial(called, self.integrand, given=draws.inputs, what="integrand")
         exact, uniform = uniform_variance(integrand)
         level = each_level(2 * self.cases)
         failing = {"weights", "variance"}
@@ -267,15 +272,30 @@ class Sampler:
         return Finding(share=1.0, text=tell(language, "efficient", **ratio), measured=measured)
 
     def _right(self, directions: Array, given: Mapping[str, Array]) -> Array:
-        return _called(self.density, directions, given=given)
+        return called(self.density, directions, given=given)
 
     def _found(self, *text: str, name: str = "", confidence: float = 1.0) -> Finding:
         sure = round(confidence, 2) if name else 0.0
         return Finding(share=self.credit.get(name, 0.0), text=line(*text), diagnosis=name, confidence=sure)
 
 
-def _called(function: Callable[..., Any], directions: Array, given: Mapping[str, Array]) -> Array:
-    found: Array = np.asarray(function(directions, **given), dtype=float)
+def called(
+    function: Callable[..., Any], directions: Array, given: Mapping[str, Array], what: str = "density"
+) -> Array:
+    """Return the finite numbers (N,) that a function of the assignment gives for directions.
+
+    Raises
+    ------
+    AssignmentError
+        When it gives anything else, or raises.
+    """
+    found = numbers(own(what, function, directions, **given), what)
+    if found.shape != (len(directions),) or not np.isfinite(found).all():
+        told = f"an array of shape {found.shape}" if found.ndim != 1 else shown(found)
+        bad = "" if found.shape != (len(directions),) else ", not all of them finite,"
+        raise AssignmentError(
+            f"{what} gives {told}{bad} for {len(directions)} directions: it must give finite numbers"
+        )
     return found
 
 

@@ -11,6 +11,7 @@ from radiokit.faces.diagnosis.catalogue import CATALOGUE
 from radiokit.faces.diagnosis.diagnose import diagnose
 from radiokit.faces.diagnosis.result import Suspicion
 from radiokit.faces.grading.evidence import clause, guesses
+from radiokit.faces.grading.given import number, own
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.runs import Runs
 from radiokit.faces.grading.russian import translated
@@ -94,18 +95,21 @@ def _suspected(
 ) -> Iterator[tuple[tuple[Suspicion, ...], bool]]:
     """Yield what explains the means: first among the question's variants, then in the catalogue."""
     others = {
-        name: np.array([float(variant(**inputs)) for inputs in runs.inputs])
+        name: np.array([number(variant, inputs, f"variants[{name!r}]") for inputs in runs.inputs])
         for name, variant in variants.items()
     }
     error = WIDER * np.sqrt(runs.variances / runs.values.shape[1]) + runs.floor / 10
 
     def reference(**changed: Any) -> Array:
-        return np.array(
-            [
-                float(exact(**{n: changed[n][k] if n in changed else v for n, v in inputs.items()}))
-                for k, inputs in enumerate(runs.inputs)
-            ]
-        )
+        try:  # out of its domain it may do anything, which then explains nothing
+            return np.array(
+                [
+                    float(exact(**{n: changed[n][k] if n in changed else v for n, v in inputs.items()}))
+                    for k, inputs in enumerate(runs.inputs)
+                ]
+            )
+        except Exception:
+            return np.full(len(runs.inputs), np.nan)
 
     for known, catalogue in ((others, ()), (reference, CATALOGUE)):
         if known:
@@ -125,7 +129,7 @@ def _suspected(
 def _numbers(runs: Runs, context: Callable[..., Mapping[str, Any]] | None) -> dict[str, Array]:
     """Return the inputs that are numbers, one for each group, with those of the context."""
     rows = [
-        {**inputs, **(context(**inputs) if context is not None else {}), "samples": count}
+        {**inputs, **(own("context", context, **inputs) if context is not None else {}), "samples": count}
         for inputs, count in zip(runs.inputs, runs.samples, strict=True)
     ]
     names = [name for name, value in rows[0].items() if np.ndim(value) == 0]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -17,6 +18,7 @@ from radiokit.faces.grading.asking import asked, close, fitted, is_extreme, is_r
 from radiokit.faces.grading.evidence import at, clause, guesses, hint_for, joined, rows, wrong_at
 from radiokit.faces.grading.exact import Reference, as_function, no_inputs
 from radiokit.faces.grading.finding import Callee, Finding
+from radiokit.faces.grading.given import check_functions, check_shares, drawn, is_within, numbers, own, truth
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.result import Result
 from radiokit.faces.grading.russian import did
@@ -55,8 +57,9 @@ class Values:
         ``reference(**inputs)`` gives what is right, an array of one number or vector for each input; or a
         closed-form case, whose exact value is right; or what is right itself.
     inputs : callable, optional
-        From a generator to the inputs by name, arrays whose first axes agree, or numbers, in the order of
-        the function's parameters. Without it the function has none, and one number is asked for.
+        From a generator to the inputs by name, arrays whose first axes agree, or numbers. The names are those
+        of the function's parameters, and stand in their order. Without it the function has none, and one
+        number is asked for.
     rtol : float
         The relative error that is allowed, in [0, 1).
     ulps : float
@@ -99,14 +102,17 @@ class Values:
 
     def __post_init__(self) -> None:
         as_function(self.reference)
-        if not 0 <= self.rtol < 1:
-            raise ParameterError("rtol", self.rtol, "in [0, 1)")
+        functions = ("inputs", "context", "terms")
+        check_functions({name: getattr(self, name) for name in functions}, self.variants)
+        if not is_within(self.rtol, 0, 1) or self.rtol == 1:
+            raise ParameterError("rtol", self.rtol, "a number in [0, 1)")
         for name in ("ulps", "atol"):
-            if not 0 <= getattr(self, name) < math.inf:
-                raise ParameterError(name, getattr(self, name), "finite and at least 0")
+            if not is_within(getattr(self, name), 0, sys.float_info.max):
+                raise ParameterError(name, getattr(self, name), "a number, finite and at least 0")
         for name in ("loose", "credit"):
-            if not all(0 <= share <= 1 for share in getattr(self, name).values()):
-                raise ParameterError(name, getattr(self, name), "shares in [0, 1]")
+            check_shares(name, getattr(self, name))
+        if not all(is_within(error, self.rtol, math.inf) and error > self.rtol for error in self.loose):
+            raise ParameterError("loose", self.loose, f"shares by errors larger than rtol = {self.rtol:g}")
 
     def judge(
         self,
@@ -129,10 +135,10 @@ class Values:
         hints: Mapping[str, Mapping[str, str]],
         shown: bool,
     ) -> Finding:
-        given = {name: np.asarray(value) for name, value in self.inputs(rng).items()}
-        right = np.atleast_1d(np.asarray(self._right(**given), dtype=float))
+        given = drawn(self.inputs, rng)
+        right = truth(self._right, given)
         seed = int(rng.integers(1 << 32))
-        allowed = self._allowed(right, self.rtol)
+        allowed = self.allowed(right, self.rtol)
         first, mode = asked(callee, given, right, seed, allowed)
         if not first.ok:
             return _raised(callee.name, first, given, language, hints)
@@ -146,7 +152,7 @@ class Values:
         if any(array.ndim for array in turned):
             right = right[::-1]
         second = callee.call(*turned, mode=mode, seed=seed)
-        if not is_right(second, right, self._allowed(right, self.rtol)):
+        if not is_right(second, right, self.allowed(right, self.rtol)):
             text = joined(say(language, "not-repeatable"))
             return Finding(share=0.0, text=text, diagnosis="not-repeatable")
         if mode == "batch":
@@ -157,7 +163,8 @@ class Values:
     def _right(self) -> Callable[..., Any]:
         return as_function(self.reference)
 
-    def _allowed(self, right: Array, rtol: float) -> Array:
+    def allowed(self, right: Array, rtol: float) -> Array:
+        """Return the absolute errors that are allowed, if the relative one is ``rtol``."""
         size = np.abs(right)
         allowed: Array = np.maximum(np.maximum(rtol * size, self.ulps * np.spacing(size)), self.atol)
         return allowed
@@ -175,7 +182,7 @@ class Values:
     ) -> Finding:
         """Say what is wrong with numbers of the right shape."""
         share = max(
-            (s for r, s in self.loose.items() if close(answer, right, self._allowed(right, r)).all()),
+            (s for r, s in self.loose.items() if close(answer, right, self.allowed(right, r)).all()),
             default=0.0,
         )
         key, values = self._known(answer, right, given, good)
@@ -236,7 +243,7 @@ class Values:
         short = len(right) >= FEWEST and bool(np.all(numbers == numbers.astype(np.float32)))
         single = short or answer.dtype == np.float32
         eps = float(np.finfo(np.float32 if single else np.float64).eps)
-        terms = 0.0 if self.terms is None else np.abs(self.terms(**given))
+        terms = 0.0 if self.terms is None else np.abs(own("terms", self.terms, **given))
         near = np.maximum(np.maximum((SINGLE if single else DOUBLE) * size, SLACK * eps * terms), self.atol)
         if not np.all(np.abs(numbers - right) <= near):
             return "", {}
@@ -251,14 +258,21 @@ class Values:
     ) -> Diagnosis | None:
         """Return what explains the answers or, if nothing does, those where the right one is not 0."""
         size = len(right)
-        context = dict(self.context(**given)) if self.context is not None else {}
+        context = dict(own("context", self.context, **given)) if self.context is not None else {}
         every = {**given, **context}
         columns = {name: value for name, value in every.items() if _is_column(name, value, size)}
-        others = {name: np.asarray(variant(**given), dtype=float) for name, variant in self.variants.items()}
+        others = {
+            name: numbers(own(f"variants[{name!r}]", variant, **given), f"variants[{name!r}]")
+            for name, variant in self.variants.items()
+        }
         usual = (*CATALOGUE, *argument_mistakes(self._right, given, right))
 
         def reference(**inputs: Any) -> Any:
-            return self._right(**{name: inputs.get(name, given[name]) for name in given})
+            try:  # out of its domain it may give anything, which then explains nothing
+                values = np.asarray(self._right(**{n: inputs.get(n, given[n]) for n in given}), dtype=float)
+            except Exception:
+                return np.full(size, math.nan)
+            return values if values.shape == right.shape else np.full(size, math.nan)
 
         found: Diagnosis | None = None
         rtol = min(max(self.rtol, 2e-5 if answer.dtype == np.float32 else 1e-6), 0.1)
@@ -311,4 +325,5 @@ def _raised(
 
 def _is_column(name: str, value: Any, size: int) -> bool:
     """Return whether the diagnosis can take an input."""
-    return np.shape(value) in ((), (size,)) or (name in ("wi", "wo") and np.shape(value) == (size, 3))
+    fits = np.shape(value) in ((), (size,)) or (name in ("wi", "wo") and np.shape(value) == (size, 3))
+    return fits and bool(np.isfinite(value).all())

@@ -127,6 +127,10 @@ SENTENCES: Mapping[str, Words] = {
         "en": "the answer could not be judged ({error}); a teacher will look at it",
         "ru": "ответ не удалось оценить ({error}); его посмотрит преподаватель",
     },
+    "assignment-failed": {
+        "en": "the question itself is at fault, not your answer; a teacher will look at it",
+        "ru": "ошибка в самом задании, а не в вашем ответе; его посмотрит преподаватель",
+    },
     "not-graded": {"en": "not graded yet", "ru": "ещё не проверено"},
     "no-submission": {"en": "there is no submission: {error}", "ru": "работы нет: {error}"},
 }
