@@ -14,8 +14,9 @@ from radiokit.faces.diagnosis.catalogue import CATALOGUE
 from radiokit.faces.diagnosis.diagnose import diagnose
 from radiokit.faces.diagnosis.result import Diagnosis
 from radiokit.faces.grading.arguments import argument_mistakes
-from radiokit.faces.grading.asking import asked, close, fitted, is_extreme, is_right, out_of_range
-from radiokit.faces.grading.evidence import at, clause, guesses, hint_for, joined, rows, wrong_at
+from radiokit.faces.grading.asking import asked, close, fitted, is_extreme, is_right
+from radiokit.faces.grading.digits import DOUBLE, FEWEST, SINGLE, lost
+from radiokit.faces.grading.evidence import at, clause, guesses, hint_for, joined, wrong_at
 from radiokit.faces.grading.exact import Reference, as_function, no_inputs
 from radiokit.faces.grading.finding import Callee, Finding
 from radiokit.faces.grading.given import check_functions, check_shares, drawn, is_within, numbers, own, truth
@@ -29,10 +30,6 @@ __all__ = ["Values", "hint_for"]
 
 SURE = 0.5
 """From which confidence on a misconception is named alone."""
-SLACK = 64
-"""How many roundings of its terms a careless formula may be off."""
-SINGLE, DOUBLE = 2e-5, 1e-6
-"""The relative deviation of a right formula with its digits lost, of numbers in float32 and others."""
 NAMES = {
     "float32": "single-precision",
     "float32-range": "single-precision",
@@ -40,8 +37,6 @@ NAMES = {
     "zero": "constant-answer",
 }
 """Diagnoses by sentences, where they differ."""
-FEWEST = 5
-"""How many answers it takes to tell something of them all."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -185,7 +180,8 @@ class Values:
             (s for r, s in self.loose.items() if close(answer, right, self.allowed(right, r)).all()),
             default=0.0,
         )
-        key, values = self._known(answer, right, given, good)
+        terms = 0.0 if self.terms is None else own("terms", self.terms, **given)
+        key, values = lost(answer, right, given, good, atol=self.atol, rtol=self.rtol, terms=terms)
         if key:
             name = NAMES.get(key, key)
             said = say(language, key, **values)
@@ -220,39 +216,6 @@ class Values:
             confidence=round(first.confidence, 2),
         )
 
-    def _known(
-        self, answer: Array, right: Array, given: Mapping[str, Array], good: Array
-    ) -> tuple[str, dict[str, Any]]:
-        """Return what is wrong where it is no misconception: digits, or the range of numbers."""
-        finite, size = np.isfinite(answer), np.abs(right)
-        if out_of_range(answer, right, given, good):
-            return "out-of-range", {"bad": rows(~good), "count": len(right)}
-        if answer.dtype == np.float32:
-            near = close(answer, right, np.maximum(SINGLE * size, self.atol))
-            if out_of_range(answer, right, given, near, widest=1e15):
-                return "float32-range", {"bad": rows(~near), "count": len(right)}
-        if not finite.all():
-            worst = answer[~finite].flat[0]
-            value = "NaN" if math.isnan(worst) else "inf" if worst > 0 else "-inf"
-            return "not-finite", {"value": value, "bad": rows(~finite), "count": len(finite)}
-        numbers = answer.astype(float)
-        if len(right) > 1 and not numbers.any() and right.any():
-            return "zero", {}
-        if len(right) > 1 and not np.ptp(numbers):
-            return ("constant", {"value": f"{numbers.flat[0]:.6g}"}) if np.ptp(right) else ("", {})
-        short = len(right) >= FEWEST and bool(np.all(numbers == numbers.astype(np.float32)))
-        single = short or answer.dtype == np.float32
-        eps = float(np.finfo(np.float32 if single else np.float64).eps)
-        terms = 0.0 if self.terms is None else np.abs(own("terms", self.terms, **given))
-        near = np.maximum(np.maximum((SINGLE if single else DOUBLE) * size, SLACK * eps * terms), self.atol)
-        if not np.all(np.abs(numbers - right) <= near):
-            return "", {}
-        deviations = (numbers / right - 1)[size > self.atol]
-        values = {"error": f"{np.max(np.abs(deviations), initial=0.0):.1g}", "rtol": self.rtol}
-        if len(deviations) >= FEWEST and np.ptp(deviations) < 0.01 * np.abs(deviations).min():
-            return "constant-rounded", values
-        return "float32" if single else "imprecise", values
-
     def _diagnosed(
         self, answer: Array, right: Array, given: Mapping[str, Array], language: str
     ) -> Diagnosis | None:
@@ -275,7 +238,7 @@ class Values:
             return values if values.shape == right.shape else np.full(size, math.nan)
 
         found: Diagnosis | None = None
-        rtol = min(max(self.rtol, 2e-5 if answer.dtype == np.float32 else 1e-6), 0.1)
+        rtol = min(max(self.rtol, SINGLE if answer.dtype == np.float32 else DOUBLE), 0.1)
         lit = right != 0
         for variants in ([others] if others else []) + [reference]:
             found = diagnose(
