@@ -12,11 +12,13 @@ import numpy as np
 import pytest
 
 from radiokit.bsdfs import GGX, BlinnPhong, Lambert, Phong, PhongOriginal
+from radiokit.checks.probes import pairs
 from radiokit.contracts.blackbox import as_bsdf
 from radiokit.faces.grading import Laws, Limits, Sandbox, lawtexts
 from radiokit.faces.grading import laws as module
 from radiokit.faces.grading.grader import Isolated
 from radiokit.faces.grading.lawtexts import LAW_SENTENCES, share_of_light
+from radiokit.faces.grading.likeness import PAIRS, compared
 from radiokit.facts.errors import ParameterError
 
 
@@ -246,6 +248,20 @@ def test_the_misconception_is_named_beside_the_law(coarse):
     assert re.search(r"wrong at \d+ of 256, as at wi: .* wo: θ = 89\.9", few.text)
 
 
+def test_the_directions_of_the_comparison_are_not_foretold():
+    known = {wi.tobytes() + wo.tobytes() for wi, wo in zip(*pairs(PAIRS, exact_blinn()), strict=True)}
+
+    def sly(wi, wo):
+        """Right where everyone was once looked at, and less elsewhere."""
+        right = [i.tobytes() + o.tobytes() in known for i, o in zip(wi, wo, strict=True)]
+        return np.where(right, 1.0, 0.77) * blinn(wi, wo)
+
+    rng = np.random.default_rng(0)
+    models = [[as_bsdf(sly)], [exact_blinn()], [{}]]
+    found = compared(*models, rng, variants={}, hints={}, language="en")
+    assert found.name == "other-factor"
+
+
 def test_variants_of_the_assignment_are_named(coarse):
     def halves(wi, wo, exponent):
         return blinn(wi, wo, exponent / 2)
@@ -333,7 +349,9 @@ def test_loops_are_searched_more_coarsely_and_judged_alike(tmp_path, monkeypatch
     judge = Laws(parameters=({"exponent": 9.0},), reference=lambda exponent: Phong(exponent=exponent))
 
     def finding(name):
-        return judge.judge(Isolated(sandbox, name), None, language="en", hints={}, shown=True)
+        return judge.judge(
+            Isolated(sandbox, name), np.random.default_rng(0), language="en", hints={}, shown=True
+        )
 
     with Sandbox(tmp_path / "theirs.py", limits=Limits(seconds=5.0)) as sandbox:
         loop, array = finding("loop"), finding("array")
