@@ -55,6 +55,10 @@ class Estimator:
     Estimators without variance are right, unless ``exact`` is False. A right estimator whose runs are nearly
     normal is rejected at most once in 1.6e7 gradings; see ``LEVEL`` and ``ROUNDS``.
 
+    What cannot be told from answers: whether the exact value was computed and given noise and an error that
+    suit each other, and whether more than N samples were drawn, as time is bounded only by ``slowest``. Where
+    that matters, read the code, or ask for a `Sampler`, whose random numbers are the judge's.
+
     Parameters
     ----------
     inputs : callable

@@ -50,8 +50,8 @@ def compared(
 
     ``models``, ``meant`` and ``given`` are the function, what it should be, and its keyword arguments, one
     for each choice of parameters; ``variants`` and ``hints`` as for `Laws`. The pairs are drawn, so that none
-    can be recognised. Values that are not finite say nothing here. A constant is a stranger unless one is asked
-    for, and so is black.
+    can be recognised. Values that are not finite say nothing here. A constant is a stranger unless one is
+    asked for, and so is black.
     """
     count = -(-PAIRS // len(models))
     rows = [slice(k * count, (k + 1) * count) for k in range(len(models))]
