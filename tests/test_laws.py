@@ -412,3 +412,37 @@ def test_an_excess_is_never_rounded_away():
 def test_arguments_out_of_range_are_named(wrong):
     with pytest.raises(ParameterError, match=f"^{list(wrong)[-1]} = "):
         Laws(**wrong)
+
+
+ODD = """
+import numpy as np
+turns = 0
+def flat(wi, wo): return np.full(len(wi), 0.3)
+def below(wi, wo): return flat(wi, wo)
+def wide(wi, wo): return flat(wi, wo)
+below.transmissive = wide.transmissive = True
+below.eta, wide.eta = -1.5, 1e290
+def huge(wi, wo): return np.full(len(wi), 1e308)
+def turning(wi, wo):
+    global turns
+    turns += 1
+    return flat(wi, wo) if turns % 2 else np.full((len(wi), 3), 0.3)
+"""
+
+
+def test_what_is_odd_costs_points_and_needs_no_person(tmp_path, coarse):
+    """A judge that raises is looked at by a teacher: no function may make it."""
+    (tmp_path / "theirs.py").write_text(ODD, encoding="utf-8")
+    texts = {
+        "below": "has eta = -1.5, which is no refractive index",
+        "wide": "has eta = 1e+290, which is no refractive index",
+        "huge": "Is too near the limit to tell: it reflects inf %",
+        "turning": "returned shape",
+    }
+    with Sandbox(tmp_path / "theirs.py", limits=Limits(seconds=5.0)) as sandbox:
+        for name, text in texts.items():
+            found = Laws().judge(
+                Isolated(sandbox, name), np.random.default_rng(0), language="en", hints={}, shown=True
+            )
+            assert found.share < 1
+            assert text in found.text
