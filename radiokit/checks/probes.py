@@ -29,7 +29,9 @@ def polar(cosine: npt.ArrayLike, phi: npt.ArrayLike) -> FloatArray:
     return np.stack([sine * np.cos(phi), sine * np.sin(phi), cosine], axis=-1)
 
 
-def pairs(count: int, f: BSDF | None = None, *, shift: npt.ArrayLike = 0.0) -> tuple[FloatArray, FloatArray]:
+def pairs(
+    count: int, f: BSDF | None = None, *, shift: FloatArray | float = 0.0
+) -> tuple[FloatArray, FloatArray]:
     """Return ``count`` pairs of directions on the upper hemisphere, hard ones included.
 
     Half are uniform in solid angle, so that an odd region of any shape is hit by its share; a quarter

@@ -276,7 +276,7 @@ class Sampler:
         exact, uniform = uniform_variance(integrand)
         level = each_level(4 * self.cases)
         width = find_lobe(integrand, ABOVE, around=(False,)).width
-        weighed = [integral(lambda w, k=k: moments(w)[k] * integrand(w), width) for k in range(2)]
+        weighed = [integral(partial(_weighed, integrand, k), width) for k in range(2)]
         failing = {"weights", "variance", "moments"}
         for _ in range(ROUNDS):
             directions = draws.sample(rng.random((self.samples, 2)))
@@ -331,6 +331,11 @@ class Sampler:
 
 def _called(function: Callable[..., Any], directions: Array, given: Mapping[str, Array]) -> Array:
     found: Array = np.asarray(function(directions, **given), dtype=float)
+    return found
+
+
+def _weighed(integrand: Callable[..., Array], k: int, directions: Array) -> Array:
+    found: Array = moments(directions)[k] * integrand(directions)
     return found
 
 
