@@ -60,6 +60,7 @@ def h(i: dict[str, Any]) -> Any:
 FACTORS: dict[str, Callable[[dict[str, Any]], Any]] = {
     "pi-too-many": lambda i: math.pi,
     "pi-too-few": lambda i: 1 / math.pi,
+    "pi-multiplied": lambda i: math.pi**2,
     "doubled": lambda i: 2,
     "halved": lambda i: 0.5,
     "four-too-many": lambda i: 4,
@@ -90,6 +91,7 @@ FACTORS: dict[str, Callable[[dict[str, Any]], Any]] = {
     "distance-forgotten": lambda i: i["distance"] ** 2,
     "distance-cubed": lambda i: 1 / i["distance"],
     "distance-squared-twice": lambda i: i["distance"] ** -2.0,
+    "distance-doubled": lambda i: i["distance"] / 2,
     "intensity-for-irradiance": lambda i: i["distance"] ** 2 / np.cos(i["theta"]),
     "intensity-for-radiance": lambda i: i["area"] * np.cos(i["theta"]),
     "flux-for-irradiance": lambda i: i["area"],

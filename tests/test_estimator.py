@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import radiokit as rk
 from radiokit.faces.grading.estimator import Aspect, Estimator
 from radiokit.faces.grading.runs import gather
 from radiokit.faces.grading.runtests import LEVEL, ROUNDS, each_level
@@ -217,6 +218,20 @@ def test_what_is_hidden_is_not_told(local_callee: Any) -> None:
             local_callee(times(1.06)), np.random.default_rng(0), language="en", hints={}, shown=shown
         )
         assert ("right is" in found.text) == shown
+
+
+def test_a_closed_form_case_may_be_the_reference(local_callee: Any) -> None:
+    judge = Estimator(reference=rk.case("lambert-in-furnace"), cases=2)  # of reflectance 0.5
+    for factor, diagnosis in ((1.0, ""), (math.pi, "pi-too-many")):
+
+        def estimate(samples: int, seed: int, factor: float = factor) -> tuple[float, float]:
+            weights = factor * np.random.default_rng(seed).random(samples)  # f cos θ / p = ρ/π cos θ 2π
+            return float(weights.mean()), float(weights.std(ddof=1)) / math.sqrt(samples)
+
+        found = judge.judge(
+            local_callee(estimate), np.random.default_rng(0), language="en", hints={}, shown=True
+        )
+        assert (found.share, found.diagnosis) == (float(not diagnosis), diagnosis)
 
 
 def test_where_nothing_exact_can_be_sampled_the_exact_value_is_no_estimate(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import os
 import shutil
@@ -16,6 +17,7 @@ import pytest
 from classroom import CLASS, KEYS, NAMES, RIGHT, act, hand_in, left_of, made, start, wait_until
 
 import radiokit as rk
+from radiokit.faces.cli import main
 from radiokit.faces.grading.classroom import contents, task
 from radiokit.faces.grading.classroom.contents import Submission, read_submission
 from radiokit.faces.grading.classroom.discovery import Entry, discover, read_roster
@@ -71,6 +73,37 @@ def test_entries_are_found_as_people_and_systems_leave_them(tmp_path: Path) -> N
     assert read_submission(entries["Cyril Lee_3"], "tiny").content == names[2].encode()
     with pytest.raises(NoSubmissionError, match="empty"):
         read_submission(entries["fedor"], "tiny")
+
+
+def test_a_person_looks_at_what_was_handed_in_and_cannot_be_taken(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    files = {
+        "anna.txt": "ill",
+        "boris/a.py": RIGHT,
+        "boris/b.py": RIGHT,
+        "clara.zip": "no zip",
+        "dora.py": RIGHT,
+    }
+    assignment = hand_in(tmp_path / "class", {**files, "eve.ipynb": "{"})
+    given = (str(tmp_path / "class"), "--assignment", str(assignment), "--out", str(tmp_path / "out"))
+    with pytest.raises(SystemExit) as ended:
+        main(["grade-class", *given, "--workers", "1"])
+    assert ended.value.code == 3
+    told = capsys.readouterr().out
+    assert f"2 for a person to look at: {tmp_path / 'out' / 'class.csv'} says why" in told
+    table = (tmp_path / "out/class.csv").read_text("utf-8-sig").splitlines()
+    rows = {row["student"]: row for row in csv.DictReader(table)}
+    assert rows["anna"]["note"] == "there is no submission: no .py or .ipynb file was handed in"
+    assert rows["boris"]["note"].startswith("there is no submission: 2 files end in .py or .ipynb")
+    assert rows["boris"]["note"].count("2 files") == 1
+    assert rows["clara"]["note"] == "there is no submission: its archive is broken, encrypted, or no .zip"
+    assert rows["eve"]["note"] == "it is no Jupyter notebook of format 3 or 4"
+    review = {
+        key: json.loads((tmp_path / f"out/results/{key}.json").read_text())["questions"][0]["review"]
+        for key in rows
+    }
+    assert {key for key, why in review.items() if why} == {"boris", "clara"}
 
 
 def test_names_are_the_same_text_on_every_system(tmp_path: Path) -> None:

@@ -20,6 +20,7 @@ import numpy as np
 import pytest
 
 import radiokit as rk
+from radiokit.faces.grading.sandbox import Sandbox
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="these attacks are written for Linux")
 
@@ -201,3 +202,26 @@ def test_a_file_that_is_no_program_gets_a_line(content, tmp_path):
 
 def test_the_attacks_are_many():
     assert len(ATTACKS) >= 60
+
+
+def test_a_channel_that_no_longer_waits_is_mended_for_the_next_part(tmp_path):
+    """Copies share their pipes' flags with the process that they are copies of."""
+    file = tmp_path / "theirs.py"
+    file.write_text(
+        "import os\n"
+        "def attack(x):\n"
+        "    for descriptor in range(3, 64):\n"
+        "        try: os.set_blocking(descriptor, False)\n"
+        "        except OSError: pass\n"
+        "    return x\n"
+        "def honest(x): return x\n"
+    )
+    with Sandbox(file) as sandbox:
+        for name in ("attack", "honest"):
+            with sandbox.apart():
+                assert sandbox.call(name, np.arange(3.0)).ok
+                time.sleep(0.1)  # the child is waiting
+                assert sandbox.call(name, np.arange(3.0)).ok
+            time.sleep(0.1)
+        large = sandbox.call("attack", np.arange(1e6))
+        assert large.ok, large.error

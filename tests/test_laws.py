@@ -14,11 +14,14 @@ import pytest
 from radiokit.bsdfs import GGX, BlinnPhong, Lambert, Phong, PhongOriginal
 from radiokit.checks.probes import pairs
 from radiokit.contracts.blackbox import as_bsdf
-from radiokit.faces.grading import Laws, Limits, Sandbox, lawtexts
+from radiokit.faces.grading import Laws, Limits, Sandbox
 from radiokit.faces.grading import laws as module
 from radiokit.faces.grading.grader import Isolated
-from radiokit.faces.grading.lawtexts import LAW_SENTENCES, share_of_light
+from radiokit.faces.grading.here import Here
+from radiokit.faces.grading.lawtexts import share_of_light
+from radiokit.faces.grading.lawwords import LAW_NAMES, LAW_SENTENCES
 from radiokit.faces.grading.likeness import PAIRS, compared
+from radiokit.faces.grading.signature import listed, renamed
 from radiokit.facts.errors import ParameterError
 
 
@@ -327,6 +330,10 @@ def renamed(wi, wo, n):
     return loop(wi, wo, n)
 
 
+def further(wi, wo, n, constant):
+    return loop(wi, wo, n)
+
+
 def mixing(wi, wo, exponent):
     mirror = wo * np.array([-1, -1, 1])
     return (exponent + 2) / (2 * np.pi) * max(np.sum(wi * mirror), 0.0) ** exponent
@@ -362,9 +369,10 @@ def test_loops_are_searched_more_coarsely_and_judged_alike(tmp_path, monkeypatch
         with monkeypatch.context() as patched:  # a clock that stands still
             patched.setattr(time, "perf_counter", lambda: 0.0)
             assert finding("array") == array
-        renamed = finding("renamed")
-        assert renamed.share == 0
-        assert renamed.text.endswith("its parameters must have the names that the question gives them")
+        assert finding("renamed") == loop  # a parameter of another name is taken by its position
+        further = finding("further")
+        assert further.share == 0
+        assert further.text.endswith("its parameters must have the names that the question gives them")
         greedy = finding("greedy")
         assert greedy.share == pytest.approx(2 / 3)
         assert "At θ = 0° it reflects 105 % of the light".lower() in greedy.text.lower()
@@ -377,11 +385,51 @@ def test_loops_are_searched_more_coarsely_and_judged_alike(tmp_path, monkeypatch
     assert "longer than 1 s; judging takes about 100000 pairs of directions: compute with" in slow.text
 
 
+def test_a_students_own_check_takes_other_names_by_position_too():
+    judge = Laws(laws=("values",), parameters=({"exponent": 9.0, "scale": 0.5},))
+    for function in (
+        lambda wi, wo, exponent, scale: scale * blinn(wi, wo, exponent),
+        lambda wi, wo, n, k: k * blinn(wi, wo, n),
+        lambda wi, wo, k, exponent: k * blinn(wi, wo, exponent),  # one is known by its name
+        lambda wi, wo, *, scale, n: scale * blinn(wi, wo, n),
+        lambda wi, wo, **given: given["scale"] * blinn(wi, wo, given["exponent"]),
+    ):
+        here = Here(lambda wi, wo: blinn(wi, wo, 9.0) / 2, "f").bsdf()
+        model = Here(function, "f").bsdf({"exponent": 9.0, "scale": 0.5})
+        wi, wo = np.array([[0.6, 0.0, 0.8]]), np.array([[0.0, 0.6, 0.8]])
+        assert model.evaluate(wi, wo) == pytest.approx(here.evaluate(wi, wo), rel=1e-15)
+    found = judge.judge(
+        Here(lambda wi, wo, n: blinn(wi, wo, n), "f"),
+        np.random.default_rng(0),
+        language="en",
+        hints={},
+        shown=False,
+    )
+    assert "unexpected keyword argument" in found.text
+
+
+@pytest.mark.parametrize(
+    ("function", "given", "passed"),
+    [
+        (lambda wi, wo, n: 0, {"exponent": 1}, {"n": 1}),
+        (lambda wi, wo, exponent: 0, {"exponent": 1}, {"exponent": 1}),
+        (lambda wi, wo, n, eps=0: 0, {"exponent": 1, "scale": 2}, {"n": 1, "eps": 2}),
+        (lambda wi, wo, n, k, eps=0: 0, {"exponent": 1}, {"exponent": 1}),  # too few: left to Python to say
+        (lambda wi, wo, n, /: 0, {"exponent": 1}, {"exponent": 1}),
+        (lambda *directions: 0, {"exponent": 1}, {"exponent": 1}),
+        (np.add, {"exponent": 1}, {"exponent": 1}),
+        (5, {"exponent": 1}, {"exponent": 1}),
+    ],
+)
+def test_parameters_are_taken_by_position_only_where_they_fit(function, given, passed):
+    assert renamed(listed(function), given) == passed
+
+
 # --------------------------------------------------------------------------------- words and arguments
 
 
 def test_every_sentence_is_there_in_both_languages_with_the_same_blanks():
-    for texts in (*LAW_SENTENCES.values(), *lawtexts.LAW_NAMES.values()):
+    for texts in (*LAW_SENTENCES.values(), *LAW_NAMES.values()):
         assert set(texts) == {"en", "ru"}
         blanks = [
             sorted({name.split("[")[0] for _, name, _, _ in string.Formatter().parse(text) if name})

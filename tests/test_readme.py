@@ -38,11 +38,14 @@ def test_the_example_of_an_assignment_grades(tmp_path):
 import numpy as np
 def irradiance(intensity, distance, theta): return intensity / distance**2
 def matt(wi, wo): return np.full(len(wi), 0.5 / np.pi)
+def lobe(exponent, samples, seed):
+    f = 2 * np.pi * np.random.default_rng(seed).random(samples) ** exponent
+    return f.mean(), f.std(ddof=1) / np.sqrt(samples)
 """
     (tmp_path / "homework.py").write_text(homework, encoding="utf-8")
     found = rk.grading.grade(tmp_path / "light.py", tmp_path / "homework.py")
     assert found["irradiance"].diagnosis == "cosine-forgotten"
-    assert (found.score, found.points) == (3, 5)
+    assert (found.score, found.points) == (5, 7)
 
 
 @pytest.mark.parametrize("target", re.findall(r"\]\(([^)#:]+)\)", TEXT))

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import radiokit as rk
 from radiokit.contracts.bsdf import BSDF
 from radiokit.faces.diagnosis.misconception import LANGUAGES
 from radiokit.faces.grading.answers import RefusedError, Taker
@@ -242,9 +243,10 @@ def test_not_finite(value: float) -> None:
     found = told(LAMP, lambda i, d, t: np.where(t > 2, value, lamp(i, d, t)))
     assert (found.share, found.diagnosis) == (0, "not-finite")
     shown = "NaN" if math.isnan(value) else str(value)
-    assert re.fullmatch(rf"Gives {shown} at [1-9] of 24 inputs\.", found.text)
+    where = r"such as intensity = [\d.]+, distance = [\d.]+, theta = [\d.]+"
+    assert re.fullmatch(rf"Gives {shown} at [1-9] of 24 inputs, {where}\.", found.text)
     everywhere = told(LAMP, lambda *_: np.full(24, value), language="ru")
-    assert everywhere.text == f"Даёт {shown} для 24 из 24 наборов данных."
+    assert everywhere.text.startswith(f"Даёт {shown} для 24 из 24 наборов данных, например при intensity = ")
 
 
 REFUSED: dict[str, tuple[Callable[..., Any], str]] = {
@@ -505,3 +507,53 @@ def test_sentences_are_joined_while_there_is_room() -> None:
     assert joined(long, "this does not fit any more", "but this") == f"{sentence(long)} But this."
     assert len(joined("a" * 500)) == LONGEST
     assert clause("This; and why") == "This"
+
+
+SQUARE = rk.case("lambert-under-square-of-2m")
+"""A reflectance of 0.5 under 2 m × 2 m of radiance 1, 1 m above."""
+
+
+def _square(scale: float) -> float:
+    """Return the light under the square, from the view factor of one quarter, derived by hand."""
+    return scale * 0.5 * 4 / (math.pi * math.sqrt(2)) * math.atan(1 / math.sqrt(2))
+
+
+@pytest.mark.parametrize(
+    "answer", [float, np.array, lambda value: [value], lambda value: np.array([[value]])]
+)
+def test_a_closed_form_case_is_a_question_for_one_number(answer: Callable[..., Any]) -> None:
+    judge = Values(reference=SQUARE)
+    assert told(judge, lambda: answer(_square(1))).share == 1
+    found = told(judge, lambda: answer(_square(math.pi)))
+    assert (found.share, found.diagnosis) == (0, "pi-too-many")
+    assert found.text.endswith("It gives 0.87042, right is 0.277063.")
+    assert "right is" not in told(judge, lambda: answer(_square(math.pi)), shown=False).text
+
+
+def test_a_number_may_be_the_reference() -> None:
+    judge = Values(reference=math.pi)
+    assert told(judge, lambda: math.pi).share == 1
+    found = told(judge, lambda: 2 * math.pi, language="ru")
+    assert (found.share, found.diagnosis) == (0, "doubled")
+    assert found.text.endswith("Получено 6.28319, верно 3.14159.")
+    assert told(judge, lambda: 3.14).diagnosis == "pi-rounded"
+    assert told(judge, lambda: 0).share == 0
+    assert told(judge, lambda: [1, 2]).text == "Returns an array of shape (2,) where one number is right."
+    assert told(judge, lambda: None).text.startswith("f returned None")
+
+
+def test_inputs_of_numbers_alone_ask_for_one_number() -> None:
+    """The right value has no dimensions."""
+    disk = Values(
+        inputs=lambda rng: {"radius": rng.uniform(1, 2)}, reference=lambda radius: math.pi * radius**2
+    )
+    assert told(disk, lambda radius: math.pi * radius**2).share == 1
+    found = told(disk, lambda radius: 2 * math.pi * radius**2)
+    assert (found.share, found.diagnosis) == (0, "doubled")
+    assert re.search(r"at radius = 1\.\d+ it gives", found.text)
+
+
+@pytest.mark.parametrize("reference", ["π", None, math.nan, [1, math.inf], object()])
+def test_what_is_no_reference_is_refused(reference: Any) -> None:
+    with pytest.raises(ParameterError, match="a function, a case, or finite numbers"):
+        Values(reference=reference)

@@ -78,6 +78,10 @@ def cosine_sample(u):
     """Cosine-weighted directions."""
     ...
 
+
+def cosine_pdf(directions):
+    ...
+
 # %%
 check(cosine_sample)
 
@@ -89,6 +93,10 @@ check(cosine_sample)
 # %%
 def lobe_sample(u, exponent):
     """Phong's lobe."""
+    ...
+
+
+def lobe_pdf(directions, exponent):
     ...
 
 # %%

@@ -78,6 +78,10 @@ def cosine_sample(u):
     """Направления с плотностью cos θ/π."""
     ...
 
+
+def cosine_pdf(directions):
+    ...
+
 # %%
 check(cosine_sample)
 
@@ -89,6 +93,10 @@ check(cosine_sample)
 # %%
 def lobe_sample(u, exponent):
     """Лепесток Фонга."""
+    ...
+
+
+def lobe_pdf(directions, exponent):
     ...
 
 # %%

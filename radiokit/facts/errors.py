@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from typing import Any
 
 __all__ = [
+    "AssignmentError",
     "CallableError",
     "MissingExtraError",
     "NonFiniteError",
@@ -120,6 +121,10 @@ def _triple(direction: Any) -> str:
 
 class TargetError(RadiokitError):
     """A command-line target that cannot be loaded."""
+
+
+class AssignmentError(RadiokitError):
+    """An assignment is at fault, such as its inputs or its reference, and no submission is."""
 
 
 class MissingExtraError(RadiokitError, ImportError):

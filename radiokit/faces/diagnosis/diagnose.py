@@ -168,6 +168,8 @@ def _pairs(problem: Problem, entries: Sequence[Misconception], baseline: float) 
     for (first, one), (second, other) in combinations(known, 2):
         assert one.factor is not None
         assert other.factor is not None
+        if first.kind == second.kind == "constant":
+            continue  # together they are a constant that nobody has named
         tried += 1
         factor = one.factor * other.factor
         values = factor * problem.reference

@@ -120,9 +120,19 @@ ENTRIES: tuple[Misconception, ...] = (
     varying(
         "distance-squared-twice",
         lambda distance: 1 / distance**2,
-        "You divided by the square of the distance once too often: radiance does not fall with distance.",
-        "Вы лишний раз разделили на квадрат расстояния: яркость с расстоянием не убывает.",
+        "You divided by the square of the distance once too often: irradiance falls as 1/d², and radiance "
+        "does not fall at all.",
+        "Вы лишний раз разделили на квадрат расстояния: освещённость убывает как 1/d², а яркость не убывает "
+        "вовсе.",
         needs=("distance",),
+    ),
+    varying(
+        "distance-doubled",
+        lambda distance: {"1/2": distance / 2, "2": 2 * distance},
+        "You have twice the distance where its square belongs: it is d**2, not d*2.",
+        "У вас удвоенное расстояние вместо его квадрата: нужно d**2, а не d*2.",
+        needs=("distance",),
+        pairs=False,
     ),
     varying(
         "intensity-for-irradiance",

@@ -22,6 +22,9 @@ Array = npt.NDArray[np.float64]
 SHARE = 0.95
 """The share of the inputs that an explanation must reach."""
 
+ROUNDING = 1e-13
+"""What of the reference's size rounding may add to an answer, however small the answer is."""
+
 LEVEL = 0.01
 """The probability that sampled answers which an explanation fits are said not to fit it."""
 
@@ -126,8 +129,13 @@ class Problem:
 
     @cached_property
     def scale(self) -> float:
-        """The largest number of the reference, by which absolute rounding is judged."""
-        return float(np.max(np.abs(self.reference), initial=0.0))
+        """The size by which absolute rounding is judged: of the largest number of the reference.
+
+        Where numbers lie so far apart that its rounding would hide half of them, it is that of the middle.
+        """
+        size = np.abs(self.reference[self.reference != 0])
+        largest, middle = (float(np.max(size)), float(np.median(size))) if size.size else (0.0, 0.0)
+        return largest if middle > ROUNDING * largest else middle
 
     @property
     def sampled(self) -> bool:
@@ -140,7 +148,7 @@ class Problem:
 
     def tolerance(self, values: Array, slack: float = 0.0) -> Array:
         """Return how far an answer may lie from ``values`` by rounding and chance."""
-        rounding = max(self.rtol, slack) * np.abs(values) + 1e-13 * self.scale
+        rounding = max(self.rtol, slack) * np.abs(values) + ROUNDING * self.scale
         return rounding + self._z * self.error
 
     def close(self, values: Array, slack: float = 0.0) -> npt.NDArray[np.bool_]:
@@ -152,15 +160,17 @@ class Problem:
         """Return χ² of the answers about ``values``, 0 where none is sampled."""
         if not self.sampled:
             return 0.0
-        spread = np.hypot(self.error, self.rtol * np.abs(values) + 1e-13 * self.scale + 1e-300)
+        spread = np.hypot(self.error, self.rtol * np.abs(values) + ROUNDING * self.scale + 1e-300)
         return float(np.sum(((self.answer - values) / spread) ** 2))
 
     def share(self, values: Array, slack: float = 0.0) -> float:
         """Return the share of the telling inputs, those not 0 throughout, at which the answer is ``values``.
 
-        Sampled answers must fit together too: 0 where the sum of z² over all is too large.
+        What is below the rounding of the reference counts as 0. Sampled answers must fit together: 0 where
+        the sum of z² over all is too large.
         """
-        telling = (values != 0) | (self.answer != 0) | (self.reference != 0)
+        least = ROUNDING * self.scale
+        telling = (np.abs(values) > least) | (np.abs(self.answer) > least) | (np.abs(self.reference) > least)
         if not telling.any() or not np.all(np.isfinite(values)):
             return 0.0
         share = float(np.mean(self.close(values, slack)[telling]))
@@ -184,5 +194,5 @@ class Problem:
 
     def resolution(self, values: Array) -> float:
         """Return the relative uncertainty of a factor fitted to all answers."""
-        size = np.maximum(np.abs(values), 1e-13 * self.scale + 1e-300)
+        size = np.maximum(np.abs(values), ROUNDING * self.scale + 1e-300)
         return self.rtol + 2 * float(np.median(self.error / size)) / math.sqrt(max(values.size, 1))

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from radiokit.faces.diagnosis.misconception import Guess, Misconception, structural
-from radiokit.faces.diagnosis.problem import Problem
+from radiokit.faces.diagnosis.problem import ROUNDING, Problem
 
 __all__ = ["ENTRIES"]
 
@@ -75,6 +75,9 @@ def _permuted(problem: Problem) -> Iterable[Guess]:
 
 
 def _constant(problem: Problem) -> Iterable[Guess]:
+    small = float(np.max(np.abs(problem.answer), initial=0.0)) <= ROUNDING * problem.scale
+    if small and np.any(problem.answer != problem.answer[0]):
+        return  # beside the reference it only looks like one number
     if problem.answer.size >= FEWEST and problem.varies(problem.reference):
         weights = 1 / np.maximum(problem.error, 1e-300) ** 2 if np.all(problem.error > 0) else None
         yield Guess(np.full_like(problem.answer, np.average(problem.answer, weights=weights)))
@@ -133,8 +136,8 @@ ENTRIES: tuple[Misconception, ...] = (
     structural(
         "horizon-not-clamped",
         _unclamped,
-        "Below the horizon the answer is 0, and yours is not: take max(0, cos θ).",
-        "Под горизонтом ответ равен 0, а у вас нет: возьмите max(0, cos θ).",
+        "Below the horizon the answer is 0, and yours is not: take max(0, cos θ), or 0 where cos θ ≤ 0.",
+        "Под горизонтом ответ равен 0, а у вас нет: возьмите max(0, cos θ) или 0 там, где cos θ ≤ 0.",
     ),
     structural(
         "sorted",

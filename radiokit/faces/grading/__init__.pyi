@@ -3,6 +3,8 @@ from .assignment import assignment_from_source as assignment_from_source
 from .assignment import list_assignments as list_assignments
 from .assignment import load_assignment as load_assignment
 from .assignment import student_rng as student_rng
+from .checkup import Checkup as Checkup
+from .checkup import check_assignment as check_assignment
 from .classroom.run import ClassGrades as ClassGrades
 from .classroom.run import grade_class as grade_class
 from .estimator import Estimator as Estimator

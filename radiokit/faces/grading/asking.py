@@ -35,7 +35,7 @@ def asked(
         result = callee.call(*arrays, mode=other, seed=seed)
         if is_right(result, right, allowed):
             return result, other
-        if _usable(result, right) and not _usable(best, right):
+        if _rights(result, right, allowed) > _rights(best, right, allowed):
             best, mode = result, other
         elif other == "scalar" and not result.ok and best.raised in ("TypeError", "ValueError"):
             best, mode = result, other  # what arrays do to code for numbers says less
@@ -44,6 +44,13 @@ def asked(
 
 def _usable(result: Result, right: Array) -> bool:
     return result.ok and len(result.values) == 1 and result.values[0].size == right.size
+
+
+def _rights(result: Result, right: Array, allowed: Array) -> int:
+    """Return how many numbers are right, or -1 where there are none."""
+    if not _usable(result, right) or result.values[0].dtype.kind == "c":
+        return -1
+    return int(np.count_nonzero(close(result.values[0].reshape(right.shape), right, allowed)))
 
 
 def is_right(result: Result, right: Array, allowed: Array) -> bool:
@@ -56,13 +63,14 @@ def is_right(result: Result, right: Array, allowed: Array) -> bool:
 def fitted(result: Result, right: Array, language: str) -> tuple[Array, str]:
     """Return the answer in the shape of what is right, or what is wrong with it."""
     (answer, *more) = result.values
+    key = "one-number" if right.shape == (1,) else "shape"
     if more:
         shape = " × ".join(str(value.shape) for value in result.values)
-        return answer, say(language, "shape", shape=shape, expected=right.shape)
+        return answer, say(language, key, shape=shape, expected=right.shape)
     if answer.dtype.kind == "c":
         return answer, say(language, "complex")
     if answer.size != right.size or (answer.ndim > right.ndim and max(answer.shape) != answer.size):
-        return answer, say(language, "shape", shape=answer.shape, expected=right.shape)
+        return answer, say(language, key, shape=answer.shape, expected=right.shape)
     if answer.dtype.kind != "f":
         answer = answer.astype(float)
     return answer.reshape(right.shape), ""

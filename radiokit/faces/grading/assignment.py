@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
+import io
 import json
 import sys
 from dataclasses import dataclass, field
@@ -11,10 +13,12 @@ from types import ModuleType
 
 import numpy as np
 
+from radiokit.faces.grading.given import line_of
 from radiokit.faces.grading.limits import Limits
+from radiokit.faces.grading.names import check_names
 from radiokit.faces.grading.question import Part, Question
 from radiokit.faces.grading.words import Words, words
-from radiokit.facts.errors import ParameterError, TargetError, UnknownNameError
+from radiokit.facts.errors import ParameterError, RadiokitError, TargetError, UnknownNameError
 
 __all__ = [
     "Assignment",
@@ -45,7 +49,8 @@ class Assignment:
     Raises
     ------
     ParameterError
-        When a name is no identifier, a text is missing, or two questions ask for one function.
+        When a name is no identifier, a text is missing, a function is asked for twice, or hints, credit or
+        variants name a misconception that is none.
     """
 
     name: str
@@ -59,9 +64,23 @@ class Assignment:
             raise ParameterError("name", self.name, "an identifier")
         words("title", self.title)
         words("intro", self.intro)
-        names = [question.name for question in self.questions]
+        if not isinstance(self.limits, Limits):
+            raise ParameterError("limits", self.limits, "rk.grading.Limits(...)")
+        if not isinstance(self.questions, tuple | list) or not all(
+            isinstance(question, Question) for question in self.questions
+        ):
+            allowed = "a tuple of rk.grading.Question(...); one alone is (Question(...),)"
+            kinds = (
+                [type(each).__name__ for each in self.questions]
+                if isinstance(self.questions, tuple | list)
+                else None
+            )
+            raise ParameterError("questions", kinds or type(self.questions).__name__, allowed)
+        names = [name for question in self.questions for name in question.functions]
         if not names or len(set(names)) != len(names):
-            raise ParameterError("questions", names, "at least one question, each for a function of its own")
+            raise ParameterError("questions", names, "at least one question, each for functions of its own")
+        object.__setattr__(self, "questions", tuple(self.questions))
+        check_names(self.questions)
 
     @property
     def points(self) -> float:
@@ -77,9 +96,10 @@ class Assignment:
             When none does.
         """
         for question in self.questions:
-            if question.name == name:
+            if name in question.functions:
                 return question
-        raise UnknownNameError("question", name, [question.name for question in self.questions])
+        also = [each for question in self.questions for each in question.functions]
+        raise UnknownNameError("question", name, [question.name for question in self.questions], also)
 
 
 def student_rng(
@@ -105,6 +125,8 @@ def list_assignments() -> list[str]:
 
 def load_assignment(target: str | Path | Assignment) -> Assignment:
     """Return an assignment by its name, or from a Python file that sets ``ASSIGNMENT``.
+
+    The file stands alone: its text is sent to wherever it grades, without modules and data beside it.
 
     Raises
     ------
@@ -137,7 +159,8 @@ def assignment_source(target: str | Path) -> tuple[str, str]:
     path = Path(target)
     if path.suffix != ".py":
         if str(target) not in list_assignments():
-            raise UnknownNameError("assignment", str(target), list_assignments())
+            own = [f"{target}.py"] if Path(f"{target}.py").is_file() else []
+            raise UnknownNameError("assignment", str(target), list_assignments(), own)
         path = FOLDER / f"{target}.py"
     if not path.is_file():
         raise TargetError(f"no such file: {path}")
@@ -158,18 +181,35 @@ def assignment_from_source(source: str, file: str = "assignment.py") -> Assignme
     >>> assignment_from_source("x = 1 / 0", "mine.py")
     Traceback (most recent call last):
         ...
-    radiokit.facts.errors.TargetError: mine.py raised ZeroDivisionError: division by zero
+    radiokit.facts.errors.TargetError: mine.py, line 1: ZeroDivisionError: division by zero
     """
     name = f"_assignment_{hashlib.sha256(source.encode()).hexdigest()[:16]}"
     module = ModuleType(name)
-    module.__file__ = file
+    module.__file__, module.__package__ = file, ""  # so that a relative import says what it lacks
     sys.modules[name] = module  # where its own dataclasses look for their module
     try:
-        exec(compile(source, file, "exec", dont_inherit=True), vars(module))
-    except Exception as error:
+        with contextlib.redirect_stdout(io.StringIO()):  # what is printed is the grade alone
+            exec(compile(source, file, "exec", dont_inherit=True), vars(module))
+    except (Exception, SystemExit) as error:
         del sys.modules[name]
-        raise TargetError(f"{file} raised {type(error).__name__}: {error}") from error
+        raise TargetError(_told(error, file)) from error
     assignment = vars(module).get("ASSIGNMENT")
     if not isinstance(assignment, Assignment):
-        raise TargetError(f"{file} sets no ASSIGNMENT = rk.grading.Assignment(...)")
+        kind = f", but a {type(assignment).__name__}" if "ASSIGNMENT" in vars(module) else ""
+        raise TargetError(f"{file} sets no ASSIGNMENT = rk.grading.Assignment(...){kind}")
     return assignment
+
+
+def _told(error: BaseException, file: str) -> str:
+    """Return in one line what an assignment's file did instead of running, where, and what would be right."""
+    where, said = line_of(error), " ".join(str(error).split()).replace(".__init__()", "(...)")
+    if isinstance(error, SyntaxError):
+        where, said = f" ({file}, line {error.lineno})", error.msg
+    at = where.strip(" ()") or file
+    if isinstance(error, RadiokitError):
+        return f"{at}: {said}"
+    missing = isinstance(error, FileNotFoundError) or (
+        isinstance(error, ImportError) and not (error.name or "").startswith("radiokit")
+    )
+    alone = "; an assignment is one file, without modules and data beside it" if missing else ""
+    return f"{at}: {type(error).__name__}: {said}{alone}"

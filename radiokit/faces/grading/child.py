@@ -21,7 +21,7 @@ from typing import Any
 __all__: list[str] = []
 
 PACKAGE = "radiokit.faces.grading."
-PARTS = ("sources", "imports", "protocol", "loading", "answers")
+PARTS = ("sources", "imports", "protocol", "loading", "answers", "signature")
 HIGH = 40
 """The first file descriptor tried for the private pipes."""
 BRANCH_ENDED = 90
@@ -61,21 +61,23 @@ class _Child:
         parts = {name: _beside(name) for name in PARTS}
         for name in PARTS:  # a submission finds them under names that no other module has
             sys.modules[f"_{name}"] = sys.modules.pop(PACKAGE + name)
-        self._protocol, self._loading, self._answers = (parts[name] for name in PARTS[-3:])
+        self._protocol, self._loading, self._answers, self._signature = (parts[name] for name in PARTS[2:])
         self._finder = parts["imports"].Finder()
         self._requests, self._results = requests, results
         self._pack, self._text = self._protocol.pack, self._protocol.plain_text
-        self._read, self._write = os.read, os.write
+        self._read, self._write, self._blocking = os.read, os.write, os.set_blocking
         self._fork, self._wait, self._exit = os.fork, os.waitpid, os._exit
         self._submission: Any = None
 
     def send(self, header: dict[str, Any], arrays: Any = ()) -> None:
         data = memoryview(self._pack(header, arrays))
+        self._blocking(self._results, True)
         while data:
             data = data[self._write(self._results, data) :]
 
     def serve(self) -> None:
         while True:
+            self._blocking(self._requests, True)  # a submission may have changed it, in a copy too
             whole = self._protocol.Assembler(limit=1 << 40)  # the sandbox is trusted
             while whole.wanted:
                 data = self._read(self._requests, min(whole.wanted, 1 << 20))
@@ -157,7 +159,7 @@ class _Child:
         for part in request["function"].split("."):
             found = getattr(found, part, None)
         if request.get("facts"):
-            return {"facts": _facts(found)}, []
+            return {"facts": {**_facts(found), "parameters": self._signature.listed(found)}}, []
         if found is None:
             return {"refused": f"defines no function {request['function']!r}"}, []
         if not callable(found):

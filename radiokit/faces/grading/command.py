@@ -21,9 +21,13 @@ NOT_FULL, UNFINISHED = 1, 3
 
 
 def grade(
-    submission: Annotated[Path, typer.Argument(help="A script or a notebook.", metavar="SUBMISSION")],
-    assignment: Annotated[str, typer.Option(help="An assignment's name, or a file that sets ASSIGNMENT.")],
-    student: Annotated[str, typer.Option(help="Who; each student has inputs of his own.")] = "",
+    submission: Annotated[
+        Path, typer.Argument(help="A script (.py) or a notebook (.ipynb).", metavar="SUBMISSION")
+    ],
+    assignment: Annotated[
+        str, typer.Option(help="radiometry, brdfs, shading, or FILE.py that sets ASSIGNMENT.")
+    ],
+    student: Annotated[str, typer.Option(help="Who, in any words; each student has inputs of his own.")] = "",
     secret_file: Annotated[
         Path | None,
         typer.Option(help=f"File with the text that makes inputs unforeseeable; else ${SECRET} counts."),
@@ -38,10 +42,17 @@ def grade(
             "json of the same submission is continued.",
         ),
     ] = None,
-    reveal: Annotated[bool, typer.Option("--reveal", help="Tell what was found about hidden parts.")] = False,
+    reveal: Annotated[
+        bool,
+        typer.Option(
+            "--reveal", help="Tell what was found about hidden parts, and why a person should look."
+        ),
+    ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print JSON, which tells all.")] = False,
 ) -> None:
     """Grade a submission; its code runs in a sandbox.
+
+    For example: radiokit grade anna.ipynb --assignment radiometry --student anna --out anna.html
 
     Exit codes: 0 full marks, 1 not full marks, 2 bad usage or input, 3 incomplete or a person should look.
     """
@@ -50,6 +61,7 @@ def grade(
     from radiokit.faces.grading.formats.writing import FORMATS, json_text, output, write_file
     from radiokit.faces.grading.grader import grade as graded
     from radiokit.faces.grading.record import continued, mark_of, record
+    from radiokit.faces.grading.rehearsal import rehearse
     from radiokit.faces.grading.unfinished import nothing_yet, with_pending
     from radiokit.faces.grading.words import checked_language
 
@@ -59,6 +71,8 @@ def grade(
         raise ParameterError("student", student, "of printable letters")
     source, name = assignment_source(assignment)
     work = assignment_from_source(source, name)
+    if Path(assignment).suffix == ".py":
+        rehearse(work)
     if submission.suffix not in (".py", ".ipynb"):
         raise ParameterError("submission", str(submission), "a script (.py) or a notebook (.ipynb)")
     if not submission.is_file():

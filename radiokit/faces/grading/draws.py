@@ -14,7 +14,8 @@ from radiokit.checks.cells import CELLS, Cells
 from radiokit.faces.grading.directions import ABOVE
 from radiokit.faces.grading.finding import Callee, Finding, Mode
 from radiokit.faces.grading.protocol import Array
-from radiokit.faces.grading.runs import UnusableError
+from radiokit.faces.grading.runs import SAME, UnusableError
+from radiokit.faces.grading.russian import did
 from radiokit.faces.grading.samplewords import line, slip, tell
 from radiokit.faces.grading.words import say
 from radiokit.facts.errors import ParameterError
@@ -26,6 +27,8 @@ __all__ = ["Draws", "Fit", "cells_of_density", "sampled", "u_slip"]
 UNIT = 1e-5
 """How far from 1 a length may be, and from each other what should be the same: float32 is let pass."""
 
+SECTORS = 16
+"""Into how many the azimuths are cut, to see whether some never occur."""
 NEAR, FAR, TORN = 1e-3, 0.2, 0.05
 """Points this near in the square may lie this far apart on the sphere in only this share of cases."""
 
@@ -87,7 +90,7 @@ class Draws:
             if callee is self.callee:
                 self.quickest = min(self.quickest, result.seconds / len(given))
             if not result.ok:
-                text = say(self.language, "call", function=name, error=result.error)
+                text = did(self.language, name, result.error)
                 if result.error.startswith("defines no function"):
                     text = line(say(self.language, "no-function", function=name, guess=""))
                 problem = problem or UnusableError(Finding(share=0.0, text=text))
@@ -171,6 +174,12 @@ class Fit:
         empty = (self.counts == 0) & (expected > 10)
         return float(expected[empty].sum() / self.total)
 
+    def lacks_azimuths(self) -> bool:
+        """Return whether whole sectors about the normal hold no direction."""
+        x, y = self.directions[:, 0], self.directions[:, 1]
+        found = np.histogram(np.arctan2(y, x), bins=SECTORS, range=(-np.pi, np.pi))[0]
+        return bool((found == 0).any())
+
     def _expected(self, density: Density | None) -> Array:
         cells = self.cells
         if density is not None:
@@ -210,7 +219,7 @@ def u_slip(draws: Draws, u: Array, directions: Array, rng: np.random.Generator) 
         changed = u[few].copy()
         changed[:, column] = fresh[:, column]
         moved = np.abs(draws.sample(changed) - directions[few]).max(axis=1)
-        if np.mean(moved < UNIT) > 0.5:
+        if moved.max() <= SAME:
             return "u-unused"
     step = NEAR * (2 * rng.random((len(few), 2)) - 1)
     near = draws.sample(np.clip(u[few] + step, 1e-9, 1 - 1e-9))

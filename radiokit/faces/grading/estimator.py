@@ -9,10 +9,9 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from radiokit.faces.diagnosis.catalogue import CATALOGUE
-from radiokit.faces.diagnosis.diagnose import diagnose
-from radiokit.faces.diagnosis.result import Suspicion
+from radiokit.faces.grading.exact import Reference, as_function, no_inputs
 from radiokit.faces.grading.finding import Callee, Finding
+from radiokit.faces.grading.given import check_functions, check_shares, number
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.runs import FLOOR, Runs, UnusableError, gather
 from radiokit.faces.grading.runtests import (
@@ -25,18 +24,16 @@ from radiokit.faces.grading.runtests import (
     honest,
     rate,
     rate_slip,
+    swapped,
 )
-from radiokit.faces.grading.samplewords import PLAIN, line, slip, tell
+from radiokit.faces.grading.samplewords import line, slip, tell
+from radiokit.faces.grading.suspects import behind_means
 from radiokit.faces.grading.words import say
 from radiokit.facts.errors import ParameterError
 
 __all__ = ["Aspect", "Estimator"]
 
 Aspect = Literal["value", "error", "efficiency"]
-
-SURE = 0.5
-WIDER = 1.25
-"""What the errors are multiplied by before a misconception is looked for: few seeds give them."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,11 +58,11 @@ class Estimator:
 
     Parameters
     ----------
-    inputs : callable
+    reference : callable, Case or float
+        ``reference(**inputs)`` gives the exact value, which is not 0; or a closed-form case, or the value.
+    inputs : callable, optional
         From a generator to the inputs by name, numbers or arrays, in the order of the parameters, without
-        ``samples`` and ``seed``.
-    reference : callable
-        ``reference(**inputs)`` gives the exact value, which is not 0.
+        ``samples`` and ``seed``; none by default.
     aspect : {"value", "error", "efficiency"}
     samples : int
         N, at least 64.
@@ -107,8 +104,8 @@ class Estimator:
     192
     """
 
-    inputs: Callable[[np.random.Generator], Mapping[str, Any]]
-    reference: Callable[..., Any]
+    reference: Reference
+    inputs: Callable[[np.random.Generator], Mapping[str, Any]] = no_inputs
     aspect: Aspect = "value"
     samples: int = 256
     runs: int = 24
@@ -123,14 +120,16 @@ class Estimator:
     slowest: float = 1e-3
 
     def __post_init__(self) -> None:
+        as_function(self.reference)
         if self.aspect not in get_args(Aspect):
             raise ParameterError("aspect", self.aspect, ", ".join(get_args(Aspect)))
         for name, least in (("samples", 64), ("runs", 8), ("cases", 1)):
             value = getattr(self, name)
             if type(value) is not int or value < least:
                 raise ParameterError(name, value, f"an integer of at least {least}")
-        if not all(0 <= share <= 1 for share in self.credit.values()):
-            raise ParameterError("credit", self.credit, "shares in [0, 1]")
+        functions = ("inputs", "context", "budget", "uniform")
+        check_functions({name: getattr(self, name) for name in functions}, self.variants)
+        check_shares("credit", self.credit)
         if self.aspect == "efficiency" and (self.budget is None or self.uniform is None):
             raise ParameterError("budget, uniform", None, "variances, where efficiency is judged")
         for name in ("noise", "slowest"):
@@ -154,7 +153,7 @@ class Estimator:
                     callee,
                     rng,
                     inputs=self.inputs,
-                    reference=self.reference,
+                    reference=as_function(self.reference),
                     cases=self.cases,
                     samples=self.samples,
                     runs=self.runs,
@@ -195,7 +194,8 @@ class Estimator:
 
     def _given(self, function: Callable[..., float] | None, runs: Runs) -> Array:
         assert function is not None
-        return np.array([float(function(**inputs)) for inputs in runs.inputs])
+        what = "budget" if function is self.budget else "uniform"
+        return np.array([number(function, inputs, what) for inputs in runs.inputs])
 
     def _right(self, runs: Runs, language: str, measured: dict[str, float]) -> Finding:
         if self.aspect == "efficiency":
@@ -240,8 +240,12 @@ class Estimator:
             )
         if runs.exact and not self.exact:
             return found(slip(language, "not-sampled", hints), name="not-sampled")
+        if not runs.values.any() and runs.right.any():
+            return found(say(language, "zero"), name="constant-answer")
         frozen = runs.frozen and not runs.exact
         biased = any(name.startswith("bias") for name in failing)
+        if biased and swapped(runs):
+            return found(slip(language, "error-first", hints), name="error-first")
         why, about, sure = self._value(runs, language, hints, shown) if biased or frozen else ([], "", 0.0)
         if frozen and not about:
             return found(slip(language, "seed-reused", hints), name="seed-reused")
@@ -278,56 +282,12 @@ class Estimator:
         if not shown:
             ratio = f"{float(np.mean(runs.means / runs.right)):.4g}"
             seen = tell(language, "biased", runs=runs.values.size, ratio=ratio)
-        for suspicions, ambiguous in self._suspected(runs, language):
-            first = suspicions[0]
-            if first.confidence < SURE or ambiguous:
-                names = " / ".join(slip(language, each.name, hints).rstrip(".") for each in suspicions[:2])
-                return [say(language, "one-of", names=names), seen], first.name, first.confidence
-            why = slip(language, first.name, hints)
-            if first.detail and first.name not in hints and first.name not in PLAIN:
-                why = f"{first.message.rstrip('.')} ({first.detail})"
-            return [why, seen], first.name, first.confidence
-        return [seen], "", 0.0
-
-    def _suspected(self, runs: Runs, language: str) -> Iterator[tuple[tuple[Suspicion, ...], bool]]:
-        """Yield what explains the means: first among this question's variants, then in the catalogue."""
-        known = _numbers(runs, self.context)
-        others = {
-            name: np.array([float(variant(**inputs)) for inputs in runs.inputs])
-            for name, variant in self.variants.items()
-        }
-        error = WIDER * np.sqrt(runs.variances / runs.values.shape[1]) + runs.floor / 10
-
-        def reference(**changed: Any) -> Array:
-            return np.array(
-                [
-                    float(
-                        self.reference(**{n: changed[n][k] if n in changed else v for n, v in inputs.items()})
-                    )
-                    for k, inputs in enumerate(runs.inputs)
-                ]
-            )
-
-        for variants, catalogue in ((others, ()), (reference, CATALOGUE)):
-            if variants:
-                found = diagnose(
-                    runs.means,
-                    runs.right,
-                    inputs=known,
-                    variants=variants,
-                    error=error,
-                    language=language,
-                    catalogue=catalogue,
-                )
-                if found.suspicions:
-                    yield found.suspicions, bool(found.ambiguous)
-
-
-def _numbers(runs: Runs, context: Callable[..., Mapping[str, Any]] | None) -> dict[str, Array]:
-    """Return the inputs that are numbers, one for each group, with those of the context."""
-    rows = [
-        {**inputs, **(context(**inputs) if context is not None else {}), "samples": count}
-        for inputs, count in zip(runs.inputs, runs.samples, strict=True)
-    ]
-    names = [name for name, value in rows[0].items() if np.ndim(value) == 0]
-    return {name: np.array([float(row[name]) for row in rows]) for name in names}
+        why, name, sure = behind_means(
+            runs,
+            reference=as_function(self.reference),
+            variants=self.variants,
+            context=self.context,
+            language=language,
+            hints=hints,
+        )
+        return [*filter(None, [why]), seen], name, sure

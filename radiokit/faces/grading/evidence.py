@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from radiokit.faces.grading.protocol import Array, plain_text
+from radiokit.faces.grading.russian import translated
 from radiokit.faces.grading.words import say, sentence
 
-__all__ = ["LONGEST", "clause", "hint_for", "joined", "rows", "wrong_at"]
+__all__ = ["LONGEST", "at", "clause", "guesses", "hint_for", "joined", "rows", "wrong_at"]
 
 LONGEST = 300
 """How many characters a text for a student should have at most."""
@@ -19,6 +20,7 @@ TELLING = ("offset",)
 PLAIN = (
     "horizon-not-clamped",
     "degrees-for-radians",
+    "distance-doubled",
     "square-root",
     "squared",
     "reciprocal",
@@ -70,7 +72,8 @@ def hint_for(
     """
     if suspicion.name in hints:
         return hints[suspicion.name][language]
-    detail = "" if suspicion.name in (PLAIN if shown else PLAIN + TELLING) else suspicion.detail
+    hidden = suspicion.name in (PLAIN if shown else PLAIN + TELLING)
+    detail = "" if hidden else translated(language, suspicion.detail)
     hint: str = suspicion.message.rstrip(".")
     return f"{hint} ({detail})" if detail else hint
 
@@ -79,20 +82,37 @@ def wrong_at(
     answer: Array, right: Array, given: Mapping[str, Array], good: Array, language: str, *, shown: bool
 ) -> tuple[str, str]:
     """Return how often an answer is wrong, with the worst input and what comes out there, and without."""
-    count = say(language, "wrong", bad=rows(~good), count=len(right))
     row = _worst(answer, right, good)
-    named = [f"{name} = {_brief(_at(value, row))}" for name, value in given.items() if _is_short(value)]
     value, truth = _told_apart(answer[row], right[row])
-    full = count
+    if not given:
+        alone = say(language, "number-shown" if shown else "number-hidden", value=value, right=truth)
+        return alone, alone
+    count = say(language, "wrong", bad=rows(~good), count=len(right))
+    key = "witness" if shown else "witness-hidden"
+    return at(f"{count}: ", row, given, language, key, value=value, right=truth), count
+
+
+def at(text: str, row: int, given: Mapping[str, Array], language: str, key: str, **values: str) -> str:
+    """Return a text with a sentence behind it that names the inputs of a row."""
+    named = [f"{name} = {_brief(_at(each, row))}" for name, each in given.items() if _is_short(each)]
+    full = text
     for most in range(len(named), -1, -1):  # fewer inputs where they would be too long
         inputs = ", ".join(named[:most]) + (", …" if most < len(given) else "")
         if not most:
             inputs = say(language, "number", row=row + 1)
-        key = "witness" if shown else "witness-hidden"
-        full = f"{count}: {say(language, key, inputs=inputs, value=value, right=truth)}"
+        full = f"{text}{say(language, key, inputs=inputs, **values)}"
         if len(full) <= LONGEST // 2:
             break
-    return full, count
+    return full
+
+
+def guesses(names: Sequence[str], language: str) -> str:
+    """Return that something may be one of these, or perhaps the only one.
+
+    >>> guesses(["You forgot π"], "en"), guesses(["this", "that"], "en")
+    ('perhaps: You forgot π', 'one of these: this / that')
+    """
+    return say(language, "one-of" if len(names) > 1 else "perhaps", names=" / ".join(names))
 
 
 def _worst(answer: Array, right: Array, good: Array) -> int:

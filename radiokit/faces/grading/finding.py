@@ -55,7 +55,7 @@ class Callee(Protocol):
         ...
 
     def bsdf(self, parameters: Mapping[str, Any] | None = None) -> BSDF:
-        """Return it as a BSDF, for the judges that judge any BSDF."""
+        """Return it as a BSDF, with its parameters by name, or by position where it has other names."""
         ...
 
     def other(self, name: str) -> Callee:

@@ -17,9 +17,10 @@ from radiokit.faces.grading.protocol import Array, plain_text
 from radiokit.faces.grading.question import Part, Question
 from radiokit.faces.grading.remote import remote_bsdf
 from radiokit.faces.grading.result import Result
+from radiokit.faces.grading.russian import told, translated
 from radiokit.faces.grading.sandbox import Sandbox
 from radiokit.faces.grading.words import checked_language, say
-from radiokit.facts.errors import CallableError, TargetError
+from radiokit.facts.errors import AssignmentError, CallableError, TargetError
 
 __all__ = ["Isolated", "grade"]
 
@@ -36,8 +37,8 @@ class Isolated:
         return self.sandbox.call(self.name, *arrays, mode=mode, outputs=outputs, seed=seed)
 
     def bsdf(self, parameters: Mapping[str, Any] | None = None) -> BSDF:
-        """Return it as a BSDF."""
-        return remote_bsdf(self.sandbox, self.name, parameters=parameters)
+        """Return it as a BSDF; parameters that it has other names for are passed by position."""
+        return remote_bsdf(self.sandbox, self.name, parameters=parameters, by_position=True)
 
     def other(self, name: str) -> Isolated:
         """Return another function of the same submission."""
@@ -93,6 +94,7 @@ def grade(
         When the assignment, a question or the submission is not there, or no sandbox can be started.
     """
     work = load_assignment(assignment)
+    taken = {name for each in work.questions for name in each.functions}
     if questions is not None:
         wanted = {work.question(name).name for name in questions}
         work = replace(work, questions=tuple(each for each in work.questions if each.name in wanted))
@@ -120,12 +122,12 @@ def grade(
             if question.name in done:
                 grades.append(done[question.name])
             else:
-                absent = _absent(sandbox, question, loaded, names, problems, language)
-                found, review, numbers = (
-                    ({part.name: absent for part in question.parts}, "", {})
-                    if absent is not None
-                    else _judged(sandbox, work, question, student, secret, language)
-                )
+                others = [name for name in names if name in question.functions or name not in taken]
+                absent = {
+                    name: _absent(sandbox, name, loaded, others, problems, language)
+                    for name in question.functions
+                }
+                found, review, numbers = _judged(sandbox, work, question, absent, student, secret, language)
                 measured.update({f"{question.name}.{name}": value for name, value in numbers.items()})
                 grades.append(_graded(question, found, review, language))
             seconds[question.name] = time.monotonic() - began
@@ -142,31 +144,45 @@ def grade(
 
 
 def _judged(
-    sandbox: Sandbox, work: Assignment, question: Question, student: str, secret: str, language: str
+    sandbox: Sandbox,
+    work: Assignment,
+    question: Question,
+    absent: Mapping[str, Finding | None],
+    student: str,
+    secret: str,
+    language: str,
 ) -> tuple[dict[str, Finding], str, dict[str, float]]:
     """Return the finding of each part, why a person should look, and what was measured."""
     found: dict[str, Finding] = {}
     review = ""
     numbers: dict[str, float] = {}
     for part in question.parts:
+        name = question.judged(part)
+        missing = absent[name]
+        if missing is not None:
+            found[part.name] = missing
+            continue
         rng = student_rng(work, question, part, student=student, secret=secret)
         shown = part.visibility == "visible"
         try:
             with sandbox.apart(), sandbox.within(question.seconds):
                 finding = part.judge.judge(
-                    Isolated(sandbox, question.name),
+                    Isolated(sandbox, name),
                     rng,
                     language=language,
                     hints=question.hints,
                     shown=shown,
                 )
         except (CallableError, TargetError) as error:
-            finding = Finding(share=0.0, text=plain_text(error))
+            finding = Finding(share=0.0, text=told(language, error))
+        except AssignmentError as error:  # the student is told no more, for it may tell what is right
+            review = plain_text(f"the assignment is at fault, part {part.name}: {error}")
+            finding = Finding(share=0.0, text=say(language, "assignment-failed"))
         except Exception as error:  # no answer may stop the grading: a person will look
             review = plain_text(f"{type(error).__name__}: {error}")
             finding = Finding(share=0.0, text=say(language, "judge-failed", error=review))
         found[part.name] = finding
-        numbers.update({f"{part.name}.{name}": value for name, value in finding.measured.items()})
+        numbers.update({f"{part.name}.{key}": value for key, value in finding.measured.items()})
     return found, review, numbers
 
 
@@ -190,27 +206,31 @@ def _graded(question: Question, found: Mapping[str, Finding], review: str, langu
 
 def _problems(loaded: Result, language: str) -> tuple[str, ...]:
     if not loaded.ok:
-        return (say(language, "not-loaded", error=loaded.error),)
-    return tuple(
-        say(language, "problem" if each["raised"] else "remark", **each)
-        for each in loaded.facts.get("problems", ())
-    )
+        return (say(language, "not-loaded", error=translated(language, loaded.error)),)
+    return tuple(_problem(each, language) for each in loaded.facts.get("problems", ()))
+
+
+def _problem(found: Mapping[str, str], language: str) -> str:
+    key = "problem" if found["raised"] else "remark"
+    where, message = (translated(language, found[name]) for name in ("where", "message"))
+    text = say(language, key, where=where, raised=found["raised"], message=message)
+    return text.lstrip(": ")  # where no place is known
 
 
 def _absent(
     sandbox: Sandbox,
-    question: Question,
+    function: str,
     loaded: Result,
     names: list[str],
     problems: tuple[str, ...],
     language: str,
 ) -> Finding | None:
-    """Return why a question cannot be graded at all, if so."""
+    """Return why a function cannot be graded at all, if so."""
     if not loaded.ok:
         return Finding(share=0.0, text=problems[0])
-    if question.name in names or sandbox.facts(question.name).facts.get("callable"):
+    if function in names or sandbox.facts(function).facts.get("callable"):
         return None
-    close = difflib.get_close_matches(question.name, names, n=1, cutoff=0.6)
+    close = difflib.get_close_matches(function, names, n=1, cutoff=0.6)
     guess = say(language, "did-you-mean", name=close[0]) if close else ""
-    text = say(language, "no-function", function=question.name, guess=guess)
+    text = say(language, "no-function", function=function, guess=guess)
     return Finding(share=0.0, text="; ".join([text, *problems[:1]]))

@@ -23,6 +23,7 @@ from radiokit.faces.grading.answers import RefusedError, Taker
 from radiokit.faces.grading.finding import Mode
 from radiokit.faces.grading.protocol import Array, plain_text
 from radiokit.faces.grading.result import Result
+from radiokit.faces.grading.signature import listed, renamed
 
 __all__ = ["Here"]
 
@@ -82,10 +83,10 @@ class Here:
         return Result(**found, seconds=time.monotonic() - began, output=text)
 
     def bsdf(self, parameters: Mapping[str, Any] | None = None) -> BSDF:
-        """Return it as a BSDF."""
+        """Return it as a BSDF; parameters that it has other names for are passed by position."""
         if self.function is None or not parameters:
             return as_bsdf(self.function, label=self.name)
-        bound = functools.partial(self.function, **parameters)
+        bound = functools.partial(self.function, **renamed(listed(self.function), parameters))
         about = {name: getattr(self.function, name, None) for name in ("transmissive", "eta")}
         given = {name: parameters.get(name, value) for name, value in about.items()}
         light = bool(given["transmissive"])

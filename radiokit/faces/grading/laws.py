@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal, get_args
 
@@ -12,11 +12,13 @@ import numpy as np
 from radiokit.checks.judge import check
 from radiokit.contracts.bsdf import BSDF
 from radiokit.faces.grading.finding import Callee, Finding
-from radiokit.faces.grading.lawtexts import failed, found, law_name, remarks, share_of_light, tell
+from radiokit.faces.grading.given import check_functions, own, shown
+from radiokit.faces.grading.lawtexts import failed, found, remarks, share_of_light
+from radiokit.faces.grading.lawwords import law_name, tell
 from radiokit.faces.grading.likeness import Likeness, compared
 from radiokit.faces.grading.remote import is_pairwise
 from radiokit.faces.grading.words import say, sentence
-from radiokit.facts.errors import CallableError, ParameterError
+from radiokit.facts.errors import AssignmentError, CallableError, ParameterError
 from radiokit.facts.report import Report
 from radiokit.facts.verdict import Outcome, Verdict
 
@@ -56,7 +58,8 @@ class Laws:
         Each law's share of the points, above 0, by law; 1 by default.
     parameters : callable or sequence of mappings
         The keyword arguments with which the function is judged, each in turn; or from a generator to them. A
-        law must turn out as expected with all of them. The function's parameters must have these names.
+        law must turn out as expected with all of them. They stand in the order of the function's parameters:
+        a function that does not know their names is given them in that order.
     reference : callable, optional
         ``reference(**parameters)`` gives the BSDF that the function should be, of one wavelength. Where it is
         another, the misconception is named; a constant, or what no known misconception leads to, earns
@@ -100,8 +103,18 @@ class Laws:
             0 < w < math.inf for w in self.weights.values()
         ):
             raise ParameterError("weights", self.weights, "finite numbers above 0 by a law that is judged")
-        if not callable(self.parameters) and not self.parameters:
-            raise ParameterError("parameters", self.parameters, "at least one mapping, such as {}")
+        mappings = not isinstance(self.parameters, Mapping | str) and isinstance(self.parameters, Iterable)
+        if not callable(self.parameters) and not (
+            mappings and self.parameters and all(isinstance(each, Mapping) for each in self.parameters)
+        ):
+            raise ParameterError(
+                "parameters", self.parameters, 'mappings in a list, such as [{"alpha": 0.1}]'
+            )
+        if self.reference is not None and not callable(self.reference):
+            raise ParameterError(
+                "reference", self.reference, "a function of the parameters that gives a BSDF"
+            )
+        check_functions({}, self.variants)
         for name, most in (("least", 1.0), ("tolerance", 0.999)):
             if not 0 <= getattr(self, name) <= most:
                 raise ParameterError(name, getattr(self, name), f"in [0, {most:g}]")
@@ -126,7 +139,8 @@ class Laws:
         language: str,
         hints: Mapping[str, Mapping[str, str]],
     ) -> Finding:
-        chosen = list(self.parameters(rng) if callable(self.parameters) else self.parameters)
+        chosen = self.chosen(rng)
+        meant = [self.meant(given) for given in chosen] if self.reference is not None else []
         wrong: dict[str, tuple[str, str]] = {}  # by law: what was found, and the sentence
         right: dict[str, str] = {}
         notes: list[str] = []
@@ -148,7 +162,6 @@ class Laws:
                     right.setdefault(verdict.check, text)
                 refused = refused or self._too_dark(report, language)
             if self.reference is not None and not refused:
-                meant = [self.reference(**given) for given in chosen]
                 like = compared(
                     models, meant, chosen, rng, variants=self.variants, hints=hints, language=language
                 )
@@ -170,6 +183,37 @@ class Laws:
             diagnosis=next((name for name in names if name), ""),
             confidence=like.confidence if like.name else float(bool(wrong or refused)),
         )
+
+    def chosen(self, rng: np.random.Generator) -> list[Mapping[str, Any]]:
+        """Return the keyword arguments with which a function is judged, each in turn.
+
+        Raises
+        ------
+        AssignmentError
+            When they are none.
+        """
+        found = own("parameters", self.parameters, rng) if callable(self.parameters) else self.parameters
+        listed = isinstance(found, Iterable) and not isinstance(found, Mapping | str)
+        chosen = list(found) if listed else []
+        if not chosen or not all(isinstance(each, Mapping) for each in chosen):
+            raise AssignmentError(f"parameters gives {shown(found)}: it must give mappings in a list")
+        return chosen
+
+    def meant(self, given: Mapping[str, Any]) -> BSDF:
+        """Return the BSDF that the function should be.
+
+        Raises
+        ------
+        AssignmentError
+            When the reference gives none.
+        """
+        assert self.reference is not None
+        found = own("reference", self.reference, **given)
+        if not isinstance(found, BSDF):
+            raise AssignmentError(
+                f"reference gives {shown(found)}: it must give a BSDF, as rk.bsdf(...) does"
+            )
+        return found
 
     def _weight(self, law: str) -> float:
         return self.weights.get(law, 1.0)

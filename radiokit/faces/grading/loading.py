@@ -26,6 +26,7 @@ __all__ = ["Submission", "prepare", "told"]
 PROBLEMS = 20
 NAMES = 60
 
+_MAIN = re.compile(r"__name__ == .__main__.|.__main__. == __name__")
 _FLOW = re.compile(r"(elif|else|except|finally)\b|[\s#)\]}]|$")
 
 
@@ -141,6 +142,9 @@ class Submission:
             if isinstance(statement, ast.Import):  # each name for itself: one that is missing costs no other
                 for alias in statement.names:
                     yield ast.copy_location(ast.Import([alias]), statement)
+                continue
+            if prefix and isinstance(statement, ast.If) and _MAIN.fullmatch(ast.unparse(statement.test)):
+                yield from statement.body  # in a notebook it is so
                 continue
             if isinstance(statement, ast.ImportFrom) and statement.module == "__future__":
                 for alias in statement.names:

@@ -18,8 +18,9 @@ from radiokit.faces.grading.handout.texts import tell
 from radiokit.faces.grading.here import Here
 from radiokit.faces.grading.protocol import plain_text
 from radiokit.faces.grading.question import Question
+from radiokit.faces.grading.russian import told, translated
 from radiokit.faces.grading.words import checked_language, say
-from radiokit.facts.errors import CallableError, TargetError
+from radiokit.facts.errors import AssignmentError, CallableError, TargetError
 
 __all__ = ["Check", "Checked", "practice"]
 
@@ -74,11 +75,11 @@ class Check:
         assert frame is not None
         assert frame.f_back is not None
         found = frame.f_back.f_globals
-        _show([self._named(question, found) for question in self._assignment.questions])
+        _show([self._judged(question, found) for question in self._assignment.questions])
 
     def judged(self, function: Any, *, namespace: Mapping[str, Any] | None = None) -> Checked:
         """Return what is found about a function, without showing it."""
-        names = [question.name for question in self._assignment.questions]
+        names = [each for question in self._assignment.questions for each in question.functions]
         name = getattr(function, "__name__", "")
         if not callable(function) or not name:
             given = plain_text(repr(function), 60)
@@ -93,26 +94,24 @@ class Check:
             )
             text = tell(self._language, "no-question", name=name, guess=guess)
             return Checked(name=name, right=None, lines=((False, text),), findings={})
-        return self._judged(self._assignment.question(name), function, namespace or {})
+        return self._judged(self._assignment.question(name), {**(namespace or {}), name: function})
 
-    def _named(self, question: Question, namespace: Mapping[str, Any]) -> Checked:
-        function = namespace.get(question.name)
-        if callable(function):
-            return self._judged(question, function, namespace)
-        lines = ((None, tell(self._language, "absent")),)
-        return Checked(name=question.name, right=None, lines=lines, findings={})
-
-    def _judged(
-        self, question: Question, function: Callable[..., Any], namespace: Mapping[str, Any]
-    ) -> Checked:
-        if _is_blank(function):
-            lines = ((None, tell(self._language, "blank")),)
+    def _judged(self, question: Question, namespace: Mapping[str, Any]) -> Checked:
+        missing = {name: _missing(namespace.get(name)) for name in question.functions}
+        if all(missing.values()):
+            lines = ((None, tell(self._language, missing[question.name])),)
             return Checked(name=question.name, right=None, lines=lines, findings={})
-        callee = Here(function, question.name, namespace)
+        callees = {name: Here(namespace.get(name), name, namespace) for name in question.functions}
         findings: dict[str, Finding] = {}
         shown: list[tuple[bool | None, str]] = []
         for part in question.parts:
             if part.visibility != "visible":
+                continue
+            name = question.judged(part)
+            callee = callees[name]
+            if missing[name]:
+                text = f"{part.title[self._language]}: {name} — {tell(self._language, missing[name])}"
+                shown.append((None, text))
                 continue
             rng = student_rng(self._assignment, question, part, student=self._student, secret=SECRET)
             callee.raised = callee.where = ""
@@ -121,22 +120,32 @@ class Check:
                     callee, rng, language=self._language, hints=question.hints, shown=True
                 )
             except (CallableError, TargetError) as error:
-                finding = Finding(share=0.0, text=plain_text(error))
+                finding = Finding(share=0.0, text=told(self._language, error))
+            except AssignmentError as error:
+                text = f"{say(self._language, 'assignment-failed')} ({plain_text(error)})"
+                finding = Finding(share=0.0, text=text)
             except Exception as error:  # as in the grader: no answer may break the judges
                 problem = plain_text(f"{type(error).__name__}: {error}")
                 finding = Finding(share=0.0, text=say(self._language, "judge-failed", error=problem))
             findings[part.name] = finding
             full = finding.share >= 1
-            raised = callee.where and callee.raised in finding.text
-            place = f" ({callee.where})" if raised else ""
+            raised = callee.where and translated(self._language, callee.raised) in finding.text
+            place = f" ({self._place(callee.where)})" if raised else ""
             shown.append((full, f"{part.title[self._language]}: {finding.text}{place}"))
-        if callee.printed.strip():
-            shown.append((None, tell(self._language, "printed", text=plain_text(callee.printed))))
+        for callee in callees.values():
+            if callee.printed.strip():
+                shown.append((None, tell(self._language, "printed", text=plain_text(callee.printed))))
         later = [part.title[self._language] for part in question.parts if part.visibility != "visible"]
         if later:
             shown.append((None, tell(self._language, "later", parts=", ".join(later))))
-        right = all(finding.share >= 1 for finding in findings.values()) if findings else None
+        done = not any(missing.values())
+        right = done and all(finding.share >= 1 for finding in findings.values()) if findings else None
         return Checked(name=question.name, right=right, lines=tuple(shown), findings=findings)
+
+    def _place(self, where: str) -> str:
+        """Return where a function raised, in words, with the line that did."""
+        place, colon, line = where.partition(": ")
+        return f"{translated(self._language, place)}{colon}{line}"
 
 
 def practice(assignment: str | Path | Assignment, *, language: str = "en", student: str = "") -> Check:
@@ -166,6 +175,13 @@ def practice(assignment: str | Path | Assignment, *, language: str = "en", stude
       ✗ no question asks for a function len; asked for: ...
     """
     return Check(load_assignment(assignment), language, student)
+
+
+def _missing(function: Any) -> str:
+    """Return the key of the text on a function that is not there, or not written; empty for any other."""
+    if not callable(function):
+        return "absent"
+    return "blank" if _is_blank(function) else ""
 
 
 def _is_blank(function: Callable[..., Any]) -> bool:

@@ -31,7 +31,7 @@ from radiokit.facts.errors import ParameterError, RadiokitError
 __all__ = ["ChildProcess", "LateError", "StoppedError", "carried", "started"]
 
 HERE = Path(__file__).resolve().parent
-PROGRAMS = ("child", "sources", "imports", "protocol", "loading", "answers")
+PROGRAMS = ("child", "sources", "imports", "protocol", "loading", "answers", "signature")
 LAUNCHING = ("launcher", "descendants", "landlock", "namespaces", "rights", "seccomp")
 STARTUP = 30.0
 """How long Python may take to start [s]."""

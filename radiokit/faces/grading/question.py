@@ -45,6 +45,8 @@ class Part:
     visibility : str
         ``"visible"``: the student sees it at once, right values included; ``"hidden"``, ``"after_due_date"``,
         ``"after_published"``: never, or later.
+    function : str
+        Which of the question's functions is judged; its own by default.
     title : mapping, optional
         ``{"en": ..., "ru": ...}``; the usual names have one.
 
@@ -58,6 +60,7 @@ class Part:
     judge: Judge
     weight: float = 1.0
     visibility: Visibility = "visible"
+    function: str = ""
     title: Words = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -65,33 +68,45 @@ class Part:
             raise ParameterError("weight", self.weight, "a finite number above 0")
         if self.visibility not in get_args(Visibility):
             raise ParameterError("visibility", self.visibility, ", ".join(get_args(Visibility)))
-        if not callable(getattr(self.judge, "judge", None)):
+        if isinstance(self.judge, type) or not callable(getattr(self.judge, "judge", None)):
             raise ParameterError("judge", self.judge, "an object with a method judge, such as Values(...)")
-        object.__setattr__(self, "title", words("title", self.title or PARTS.get(self.name, {})))
+        if not isinstance(self.name, str) or not self.name:
+            raise ParameterError("name", self.name, "a text")
+        usual = f'texts {{"en": ..., "ru": ...}}; only these names have one: {", ".join(PARTS)}'
+        if not self.title and self.name not in PARTS:
+            raise ParameterError(f"title of part {self.name}", self.title, usual)
+        title = words(f"title of part {self.name}", self.title or PARTS[self.name])
+        object.__setattr__(self, "title", title)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Question:
-    """One question: a function that the student writes.
+    """One question: a function that the student writes, and what he is to write beside it.
 
     Parameters
     ----------
     signature : str
-        Such as ``"solid_angle(half_angle)"``; the function's name is the question's.
+        Such as ``"solid_angle(half_angle)"``; the function's name is the question's. Its parameters are the
+        judges' inputs, by the same names and in the same order. Defaults and annotations may stand in it.
     points : float
         Above 0; shared by the parts by their weights.
     title, text : mapping
         ``{"en": ..., "ru": ...}``, the text in Markdown with LaTeX.
     parts : tuple of Part
+    also : tuple of str
+        The signatures of further functions that it asks for, such as ``"cosine_pdf(directions)"`` beside
+        ``"cosine_sample(u)"``. A judge finds them with ``callee.other(name)``; a part may be on one of them.
     hints : mapping
-        Further sentences ``{"en": ..., "ru": ...}`` by the misconception that they answer.
+        Further sentences ``{"en": ..., "ru": ...}`` by the misconception that they answer, one of
+        ``rk.list_misconceptions()`` or of a judge's ``variants``.
     seconds : float
         Wall time for all calls of one part together [s], above 0.
 
     Raises
     ------
     ParameterError
-        When an argument is out of its range, or two parts have one name.
+        When an argument is out of its range, two parts or functions have one name, or a part is on a function
+        that is not asked for.
 
     Examples
     --------
@@ -106,8 +121,8 @@ class Question:
     ...     text=both,
     ...     parts=(Part(name="ordinary", judge=judge),),
     ... )
-    >>> square.name, square.parameters
-    ('square', ('x',))
+    >>> square.name, square.functions
+    ('square', {'square': ('x',)})
     """
 
     signature: str
@@ -115,22 +130,44 @@ class Question:
     title: Words
     text: Words
     parts: tuple[Part, ...]
+    also: tuple[str, ...] = ()
     hints: Mapping[str, Words] = field(default_factory=dict)
     seconds: float = 10.0
 
     def __post_init__(self) -> None:
-        _function(self.signature)
+        for signature in (self.signature, *((self.also,) if isinstance(self.also, str) else self.also)):
+            arguments = _function(signature).args
+            if arguments.vararg or arguments.kwarg:
+                raise ParameterError(
+                    "signature", signature, "without * and **: inputs are handed over by place"
+                )
+        if isinstance(self.also, str):
+            raise ParameterError("also", self.also, "a tuple of signatures")
+        if len(self.functions) != 1 + len(self.also):
+            raise ParameterError("also", self.also, "signatures, each of a name of its own")
         for name in ("points", "seconds"):
             value = getattr(self, name)
             if not isinstance(value, int | float) or not 0 < value < math.inf:
-                raise ParameterError(name, value, "a finite number above 0")
-        words("title", self.title)
-        words("text", self.text)
-        for name, hint in self.hints.items():
-            words(f"hints[{name!r}]", hint)
+                raise ParameterError(f"{self.name}: {name}", value, "a finite number above 0")
+        words(f"{self.name}: title", self.title)
+        words(f"{self.name}: text", self.text)
+        if not isinstance(self.hints, Mapping):
+            raise ParameterError(f"{self.name}: hints", self.hints, "texts by misconception")
+        for hint, said in self.hints.items():
+            words(f"{self.name}: hints[{hint!r}]", said)
+        if not isinstance(self.parts, tuple | list) or not all(isinstance(part, Part) for part in self.parts):
+            allowed = "a tuple of rk.grading.Part(name=..., judge=...); one alone is (Part(...),)"
+            kinds = (
+                [type(each).__name__ for each in self.parts] if isinstance(self.parts, tuple | list) else None
+            )
+            raise ParameterError(f"{self.name}: parts", kinds or type(self.parts).__name__, allowed)
         names = [part.name for part in self.parts]
         if not names or len(set(names)) != len(names):
-            raise ParameterError("parts", names, "at least one part, each of a name of its own")
+            raise ParameterError(f"{self.name}: parts", names, "at least one part, each of a name of its own")
+        object.__setattr__(self, "parts", tuple(self.parts))
+        for part in self.parts:
+            if self.judged(part) not in self.functions:
+                raise ParameterError("function", part.function, f"among {', '.join(self.functions)}")
 
     @property
     def name(self) -> str:
@@ -140,8 +177,29 @@ class Question:
     @property
     def parameters(self) -> tuple[str, ...]:
         """The names of its parameters, in order."""
+        return self.functions[self.name]
+
+    @property
+    def functions(self) -> Mapping[str, tuple[str, ...]]:
+        """The parameters of each function that it asks for by that function's name, its own first."""
+        found = [_function(signature) for signature in (self.signature, *self.also)]
+        return {
+            each.name: tuple(
+                one.arg for one in (*each.args.posonlyargs, *each.args.args, *each.args.kwonlyargs)
+            )
+            for each in found
+        }
+
+    def judged(self, part: Part) -> str:
+        """Return the name of the function that a part is on."""
+        return part.function or self.name
+
+    @property
+    def needed(self) -> int:
+        """How many parameters have no default value."""
         arguments = _function(self.signature).args
-        return tuple(each.arg for each in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs))
+        given = len(arguments.posonlyargs) + len(arguments.args) - len(arguments.defaults)
+        return given + sum(each is None for each in arguments.kw_defaults)
 
     def worth(self, part: Part) -> float:
         """Return how many of the points a part is worth."""

@@ -17,6 +17,7 @@ from radiokit.contracts.calling import Mode
 from radiokit.faces.grading.limits import Limits
 from radiokit.faces.grading.protocol import plain_text
 from radiokit.faces.grading.sandbox import Sandbox
+from radiokit.faces.grading.signature import renamed
 from radiokit.facts.errors import CallableError, TargetError, suggestion
 
 __all__ = ["is_pairwise", "open_isolated", "remote_bsdf"]
@@ -69,7 +70,13 @@ class _Remote:
         return answer
 
 
-def remote_bsdf(sandbox: Sandbox, function: str, *, parameters: Mapping[str, Any] | None = None) -> BSDF:
+def remote_bsdf(
+    sandbox: Sandbox,
+    function: str,
+    *,
+    parameters: Mapping[str, Any] | None = None,
+    by_position: bool = False,
+) -> BSDF:
     """Return a function in a sandbox as a BSDF, for the judges and whatever else takes one.
 
     It is ``as_bsdf`` of a function that happens to run elsewhere: its ``pdf``, ``sample``, ``transmissive``
@@ -82,6 +89,9 @@ def remote_bsdf(sandbox: Sandbox, function: str, *, parameters: Mapping[str, Any
         The function's name.
     parameters : dict, optional
         Its keyword arguments.
+    by_position : bool
+        Whether those whose names it does not know are given to its other parameters in their order, where
+        they are as many.
 
     Raises
     ------
@@ -111,7 +121,8 @@ def remote_bsdf(sandbox: Sandbox, function: str, *, parameters: Mapping[str, Any
     eta = facts["eta"]
     if transmissive and "eta" not in given and eta is not None and not LEAST <= eta <= 1 / LEAST:
         raise CallableError(function, f"has eta = {eta:g}, which is no refractive index")
-    remote = _Remote(sandbox, function, given)
+    passed = renamed(facts["parameters"], given) if by_position else given
+    remote = _Remote(sandbox, function, passed)
     model = as_bsdf(
         remote,
         label=function,

@@ -135,4 +135,15 @@ def _facts(found: Any) -> dict[str, Any]:
     return {
         **{name: found.get(name) is True for name in ("callable", "pdf", "sample", "transmissive")},
         "eta": None if eta is None else float(eta),
+        "parameters": _parameters(found.get("parameters")),
     }
+
+
+def _parameters(found: Any) -> tuple[tuple[str, bool], ...]:
+    """Return the parameters that a function says it has, as ``signature.listed`` does."""
+    listed = found[:NAMES] if isinstance(found, list) else []
+    return tuple(
+        (plain_text(each[0], 60), each[1] is True)
+        for each in listed
+        if isinstance(each, list) and len(each) == 2
+    )

@@ -11,12 +11,14 @@ from typing import Any
 import numpy as np
 
 from radiokit.faces.grading.finding import Callee, Finding
+from radiokit.faces.grading.given import drawn, number
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.result import Result
+from radiokit.faces.grading.russian import did
 from radiokit.faces.grading.samplewords import line, slip, tell
-from radiokit.faces.grading.words import say
+from radiokit.facts.errors import AssignmentError
 
-__all__ = ["FLOOR", "Runs", "UnusableError", "gather"]
+__all__ = ["FLOOR", "Runs", "UnusableError", "described", "exact", "gather"]
 
 FLOOR = 1e-4
 """A relative deviation below which everything is rounding, float32's sums included."""
@@ -154,18 +156,17 @@ def gather(
     given, rows, right, counts, again = [], [], [], [], []
     quickest = math.inf
     for _ in range(cases):
-        drawn = {name: np.asarray(value) for name, value in inputs(rng).items()}
-        truth = float(reference(**drawn))
+        chosen, truth = exact(inputs, reference, rng)
         for count in (samples, QUADRUPLED * samples):
             seeds = rng.integers(SEEDS, size=runs)
             pairs = []
             for seed in seeds.tolist():
-                asked = (*drawn.values(), np.asarray(count), np.asarray(seed))
+                asked = (*chosen.values(), np.asarray(count), np.asarray(seed))
                 result = callee.call(*asked, outputs=2)
                 quickest = min(quickest, result.seconds / count)
-                pairs.append(_pair(callee, result, {**drawn, "samples": count, "seed": seed}, language))
+                pairs.append(_pair(callee, result, {**chosen, "samples": count, "seed": seed}, language))
             again.append((asked, pairs[-1]))
-            given.append(drawn)
+            given.append(chosen)
             right.append(truth)
             counts.append(count)
             rows.append(pairs)
@@ -178,14 +179,35 @@ def gather(
     return Runs(values, errors, np.array(right), np.array(counts), tuple(given), quickest)
 
 
+def exact(
+    inputs: Callable[[np.random.Generator], Mapping[str, Any]],
+    reference: Callable[..., Any],
+    rng: np.random.Generator,
+) -> tuple[dict[str, Array], float]:
+    """Return inputs and the exact value for them.
+
+    Raises
+    ------
+    AssignmentError
+        When the inputs are no numbers, or the value is none, infinite or 0.
+    """
+    found = drawn(inputs, rng, rows=False)
+    value = number(reference, found)
+    if not value:
+        told = described({name: each for name, each in found.items() if not each.ndim})
+        raise AssignmentError(
+            f"reference gives 0 at {told or 'all inputs'}: errors are by its size, so that it must not"
+        )
+    return found, value
+
+
 def _pair(callee: Callee, result: Result, inputs: Mapping[str, Any], language: str) -> tuple[float, float]:
     """Return a value and its standard error."""
     pair = line(tell(language, "pair", function=callee.name))
     if not result.ok and not result.raised and "are wanted" in result.error:
         raise UnusableError(Finding(share=0.0, text=pair))
     if not result.ok:
-        text = say(language, "call", function=callee.name, error=result.error)
-        raise UnusableError(Finding(share=0.0, text=text))
+        raise UnusableError(Finding(share=0.0, text=did(language, callee.name, result.error)))
     numbers = [array for array in result.values if array.size == 1 and array.dtype.kind != "c"]
     if len(numbers) != 2 or len(result.values) != 2:
         raise UnusableError(Finding(share=0.0, text=pair))

@@ -116,7 +116,7 @@ def excess(runs: Runs, budget: Array) -> float:
 def error_slip(runs: Runs) -> str:
     """Return the name of what was given for the standard error."""
     ratios, spread = claims(runs)
-    if (runs.claimed <= runs.floor**2).all():
+    if (runs.errors <= 1e-3 * runs.floor[:, None]).all():
         repeated = rate(runs) < each_level(1) and rate_slip(runs) == "sample-repeated"
         return "sample-repeated" if repeated else "error-zero"
     count, variance = np.log(runs.samples), steady(runs)[0]
@@ -135,6 +135,15 @@ def error_slip(runs: Runs) -> str:
     if misfit[best] < 4 * len(ratios):
         return best
     return "error-too-large" if ratios.sum() > 0 else "error-too-small"
+
+
+def swapped(runs: Runs) -> bool:
+    """Return whether the standard errors are what the values should be, and the values are not."""
+    if runs.exact:
+        return False
+    means, spread = runs.errors.mean(axis=1), runs.errors.std(axis=1)
+    near = 5 * spread / math.sqrt(runs.errors.shape[1]) + runs.floor
+    return bool((np.abs(means - runs.right) <= near).all() and (spread < np.abs(means) / 2).all())
 
 
 def rate_slip(runs: Runs) -> str:

@@ -10,8 +10,6 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from radiokit.faces.diagnosis.catalogue import CATALOGUE
-from radiokit.faces.diagnosis.diagnose import diagnose
 from radiokit.faces.grading.directions import (
     ABOVE,
     ASKED,
@@ -22,28 +20,24 @@ from radiokit.faces.grading.directions import (
     uniform_variance,
 )
 from radiokit.faces.grading.draws import Draws, Fit, cells_of_density, sampled, u_slip
+from radiokit.faces.grading.exact import no_inputs
 from radiokit.faces.grading.finding import Callee, Finding
+from radiokit.faces.grading.given import check_functions, check_shares, drawn, numbers, own, shown
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.runs import UnusableError
 from radiokit.faces.grading.runtests import ROUNDS, each_level
-from radiokit.faces.grading.samplewords import PLAIN, line, slip, tell
-from radiokit.facts.errors import ParameterError
+from radiokit.faces.grading.samplewords import line, slip, tell
+from radiokit.faces.grading.suspects import behind_density
+from radiokit.facts.errors import AssignmentError, ParameterError
 from radiokit.measure.slope import find_lobe
 from radiokit.measure.statistics import bernstein_test
 
-__all__ = ["Sampler", "SamplerAspect"]
+__all__ = ["Sampler", "SamplerAspect", "called"]
 
 SamplerAspect = Literal["distribution", "density", "efficiency"]
 
 FITS = 1e-3
 """The p-value from which samples are said to follow another density than the one that is asked for."""
-
-SURE = 0.5
-"""From which confidence on a misconception is named."""
-
-
-def _nothing(rng: np.random.Generator) -> Mapping[str, Any]:
-    return {}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,7 +98,7 @@ class Sampler:
     """
 
     density: Callable[..., Any]
-    inputs: Callable[[np.random.Generator], Mapping[str, Any]] = _nothing
+    inputs: Callable[[np.random.Generator], Mapping[str, Any]] = no_inputs
     aspect: SamplerAspect = "distribution"
     pdf: str = ""
     integrand: Callable[..., Any] | None = None
@@ -130,8 +124,9 @@ class Sampler:
         for name, low, high in (("factor", 1, math.inf), ("rtol", 0, 0.1), ("slowest", 0, math.inf)):
             if not low < getattr(self, name) < high:
                 raise ParameterError(name, getattr(self, name), f"above {low} and below {high}")
-        if not all(0 <= share <= 1 for share in self.credit.values()):
-            raise ParameterError("credit", self.credit, "shares in [0, 1]")
+        functions = {name: getattr(self, name) for name in ("density", "inputs", "integrand")}
+        check_functions(functions, self.variants)
+        check_shares("credit", self.credit)
 
     def judge(
         self,
@@ -150,7 +145,7 @@ class Sampler:
         }
         found = Finding(share=1.0, text="")
         for _ in range(self.cases):
-            given = {name: np.asarray(value) for name, value in self.inputs(rng).items()}
+            given = drawn(self.inputs, rng, rows=False)
             draws = Draws(callee, self.pdf, given, language)
             try:
                 found = ways[self.aspect](draws, rng, hints)
@@ -188,11 +183,12 @@ class Sampler:
         if own:
             told.append(tell(language, "consistent", function=self.pdf))
         for name, variant in {**self.variants, "uniform-instead": _uniform}.items():
-            density = partial(_called, variant, given=draws.inputs)
+            density = partial(called, variant, given=draws.inputs, what=f"variants[{name!r}]")
             if min(fit.p_values(density).values()) > FITS:
                 return self._found(slip(language, name, hints), *told, name=name)
         if fit.never() > 0.1:
-            return self._found(slip(language, "quarter-only", hints), *told, name="quarter-only")
+            name = "quarter-only" if fit.lacks_azimuths() else "part-only"
+            return self._found(slip(language, name, hints), *told, name=name)
         right = integral(lambda w: w[:, 2] * self._right(w, draws.inputs), fit.cells.width)
         mean = float(np.mean(fit.directions[:, 2]))
         told.append(tell(language, "cosine", value=f"{mean:.3f}", right=f"{right:.3f}"))
@@ -226,53 +222,28 @@ class Sampler:
             count=ASKED,
             integral=f"{integral(draws.claimed, cells.width):.4g}",
         )
-        name, text, confidence = self._density_slip(draws, directions, claimed, right, hints)
-        return self._found(text, told, name=name, confidence=confidence)
-
-    def _density_slip(
-        self,
-        draws: Draws,
-        directions: Array,
-        claimed: Array,
-        right: Array,
-        hints: Mapping[str, Mapping[str, str]],
-    ) -> tuple[str, str, float]:
-        """Return the misconception behind a wrong density, what is said of it, and how sure that is.
-
-        Those that the question knows come first, then a wrong factor, then the whole catalogue.
-        """
-        language = draws.language
-        inputs = {name: value for name, value in draws.inputs.items() if value.ndim == 0}
         known = {"uniform-instead": _uniform, **self.variants}
-        others = {name: _called(each, directions, given=draws.inputs) for name, each in known.items()}
-        for variants, catalogue in ((others, ()), (None, CATALOGUE)):
-            found = diagnose(
-                claimed,
-                right,
-                inputs={**inputs, "cosine": directions[:, 2]},
-                variants=variants,
-                language=language,
-                catalogue=catalogue,
-                rtol=self.rtol,
-            )
-            first = found.first
-            if first is not None and not found.ambiguous and first.confidence >= SURE:
-                text = slip(language, first.name, hints)
-                if first.detail and first.name not in hints and first.name not in PLAIN:
-                    text = f"{first.message.rstrip('.')} ({first.detail})"
-                return first.name, text, first.confidence
-            ratio = claimed[right > 0] / right[right > 0]
-            steady = np.ptp(ratio) <= self.rtol * abs(ratio).max()
-            if steady and abs(ratio[0] - 1) > self.rtol:
-                return "pdf-not-normalised", slip(language, "pdf-not-normalised", hints), 1.0
-        return "", "", 0.0
+        numbers = {key: value for key, value in draws.inputs.items() if value.ndim == 0}
+        text, name, confidence = behind_density(
+            claimed,
+            right,
+            inputs={**numbers, "cosine": directions[:, 2]},
+            variants={
+                key: called(each, directions, draws.inputs, f"variants[{key!r}]")
+                for key, each in known.items()
+            },
+            rtol=self.rtol,
+            language=language,
+            hints=hints,
+        )
+        return self._found(text, told, name=name, confidence=confidence)
 
     def _efficiency(
         self, draws: Draws, rng: np.random.Generator, hints: Mapping[str, Mapping[str, str]]
     ) -> Finding:
         assert self.integrand is not None
         language = draws.language
-        integrand = partial(_called, self.integrand, given=draws.inputs)
+        integrand = partial(called, self.integrand, given=draws.inputs, what="integrand")
         exact, uniform = uniform_variance(integrand)
         level = each_level(4 * self.cases)
         width = find_lobe(integrand, ABOVE, around=(False,)).width
@@ -322,15 +293,30 @@ class Sampler:
         return Finding(share=1.0, text=tell(language, "efficient", **ratio), measured=measured)
 
     def _right(self, directions: Array, given: Mapping[str, Array]) -> Array:
-        return _called(self.density, directions, given=given)
+        return called(self.density, directions, given=given)
 
     def _found(self, *text: str, name: str = "", confidence: float = 1.0) -> Finding:
         sure = round(confidence, 2) if name else 0.0
         return Finding(share=self.credit.get(name, 0.0), text=line(*text), diagnosis=name, confidence=sure)
 
 
-def _called(function: Callable[..., Any], directions: Array, given: Mapping[str, Array]) -> Array:
-    found: Array = np.asarray(function(directions, **given), dtype=float)
+def called(
+    function: Callable[..., Any], directions: Array, given: Mapping[str, Array], what: str = "density"
+) -> Array:
+    """Return the finite numbers (N,) that a function of the assignment gives for directions.
+
+    Raises
+    ------
+    AssignmentError
+        When it gives anything else, or raises.
+    """
+    found = numbers(own(what, function, directions, **given), what)
+    if found.shape != (len(directions),) or not np.isfinite(found).all():
+        told = f"an array of shape {found.shape}" if found.ndim != 1 else shown(found)
+        bad = "" if found.shape != (len(directions),) else ", not all of them finite,"
+        raise AssignmentError(
+            f"{what} gives {told}{bad} for {len(directions)} directions: it must give finite numbers"
+        )
     return found
 
 

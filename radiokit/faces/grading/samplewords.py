@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from radiokit.faces.diagnosis.catalogue import CATALOGUE
-from radiokit.faces.grading.words import Words
+from radiokit.faces.grading.words import Words, sentence
 
 __all__ = ["PLAIN", "SENTENCES", "SLIPS", "line", "slip", "tell"]
 
@@ -238,6 +238,15 @@ SLIPS: Mapping[str, Words] = {
         "ru": "Близким u отвечают далёкие направления: отображение квадрата в направления должно быть "
         "непрерывным, иначе стратифицированная выборка теряет смысл.",
     },
+    "error-first": {
+        "en": "You returned the standard error first: return value, standard_error.",
+        "ru": "Вы вернули сначала стандартную ошибку, а нужно: return value, standard_error.",
+    },
+    "part-only": {
+        "en": "A part of the hemisphere is never sampled, at all azimuths: look at the range of θ.",
+        "ru": "Часть полусферы никогда не попадает в выборку при любом азимуте: проверьте, какие значения "
+        "принимает θ.",
+    },
     "quarter-only": {
         "en": "A part of the hemisphere is never sampled: the azimuth must run over the whole of 2π.",
         "ru": "Часть полусферы никогда не попадает в выборку: азимут должен пробегать все 2π.",
@@ -289,7 +298,7 @@ def line(*sentences: str) -> str:
     """
     text = ""
     for each in filter(None, sentences):
-        more = f"{text} {each[0].upper()}{each[1:].rstrip('.')}.".strip()
+        more = f"{text} {sentence(each)}".strip()
         if not text or len(more) <= LONGEST:
             text = more
     return text

@@ -199,7 +199,7 @@ class Sandbox:
         )
 
     def facts(self, function: str) -> Result:
-        """Ask what a function says of itself: ``facts`` has callable, pdf, sample, transmissive, eta."""
+        """Ask what a function says of itself: callable, pdf, sample, transmissive, eta and parameters."""
         return self._called({"function": function, "facts": True}, (), None)
 
     @contextmanager

@@ -42,11 +42,18 @@ def with_pending(grade: Grade, assignment: Assignment) -> Grade:
     return replace(grade, questions=questions)
 
 
-def no_submission(assignment: Assignment, error: str, *, student: str = "", language: str = "en") -> Grade:
-    """Return the grade of work that is not there: no points, complete, and ``error`` says what was found."""
+def no_submission(
+    assignment: Assignment, error: str, *, student: str = "", language: str = "en", review: bool = False
+) -> Grade:
+    """Return the grade of work that is not there: no points, complete, and ``error`` says what was found.
+
+    ``review`` says that a person should look at it.
+    """
     text = say(checked_language(language), "no-submission", error=error)
     grade = nothing_yet(assignment, student=student, language=language)
     questions = tuple(_without_points(question, text, language) for question in assignment.questions)
+    if review:
+        questions = tuple(replace(question, review=text) for question in questions)
     return replace(grade, questions=questions, problems=(text,), complete=True)
 
 

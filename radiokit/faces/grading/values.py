@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -14,10 +15,13 @@ from radiokit.faces.diagnosis.diagnose import diagnose
 from radiokit.faces.diagnosis.result import Diagnosis
 from radiokit.faces.grading.arguments import argument_mistakes
 from radiokit.faces.grading.asking import asked, close, fitted, is_extreme, is_right, out_of_range
-from radiokit.faces.grading.evidence import clause, hint_for, joined, rows, wrong_at
+from radiokit.faces.grading.evidence import at, clause, guesses, hint_for, joined, rows, wrong_at
+from radiokit.faces.grading.exact import Reference, as_function, no_inputs
 from radiokit.faces.grading.finding import Callee, Finding
+from radiokit.faces.grading.given import check_functions, check_shares, drawn, is_within, numbers, own, truth
 from radiokit.faces.grading.protocol import Array
 from radiokit.faces.grading.result import Result
+from radiokit.faces.grading.russian import did
 from radiokit.faces.grading.words import say, sentence
 from radiokit.facts.errors import ParameterError
 
@@ -29,7 +33,12 @@ SLACK = 64
 """How many roundings of its terms a careless formula may be off."""
 SINGLE, DOUBLE = 2e-5, 1e-6
 """The relative deviation of a right formula with its digits lost, of numbers in float32 and others."""
-NAMES = {"float32": "single-precision", "float32-range": "single-precision", "constant": "constant-answer"}
+NAMES = {
+    "float32": "single-precision",
+    "float32-range": "single-precision",
+    "constant": "constant-answer",
+    "zero": "constant-answer",
+}
 """Diagnoses by sentences, where they differ."""
 FEWEST = 5
 """How many answers it takes to tell something of them all."""
@@ -44,11 +53,13 @@ class Values:
 
     Parameters
     ----------
-    inputs : callable
-        From a generator to the inputs by name, arrays whose first axes agree, or numbers, in the order of
-        the function's parameters.
-    reference : callable
-        ``reference(**inputs)`` gives what is right, an array of one number or vector for each input.
+    reference : callable, Case or array_like
+        ``reference(**inputs)`` gives what is right, an array of one number or vector for each input; or a
+        closed-form case, whose exact value is right; or what is right itself.
+    inputs : callable, optional
+        From a generator to the inputs by name, arrays whose first axes agree, or numbers. The names are those
+        of the function's parameters, and stand in their order. Without it the function has none, and one
+        number is asked for.
     rtol : float
         The relative error that is allowed, in [0, 1).
     ulps : float
@@ -72,10 +83,14 @@ class Values:
     ------
     ParameterError
         When a number is out of its range.
+
+    >>> import radiokit as rk
+    >>> Values(reference=rk.case("lambert-under-square-of-2m")).rtol
+    1e-09
     """
 
-    inputs: Callable[[np.random.Generator], Mapping[str, Any]]
-    reference: Callable[..., Any]
+    reference: Reference
+    inputs: Callable[[np.random.Generator], Mapping[str, Any]] = no_inputs
     rtol: float = 1e-9
     ulps: float = 0.0
     atol: float = 0.0
@@ -86,14 +101,18 @@ class Values:
     terms: Callable[..., Any] | None = None
 
     def __post_init__(self) -> None:
-        if not 0 <= self.rtol < 1:
-            raise ParameterError("rtol", self.rtol, "in [0, 1)")
+        as_function(self.reference)
+        functions = ("inputs", "context", "terms")
+        check_functions({name: getattr(self, name) for name in functions}, self.variants)
+        if not is_within(self.rtol, 0, 1) or self.rtol == 1:
+            raise ParameterError("rtol", self.rtol, "a number in [0, 1)")
         for name in ("ulps", "atol"):
-            if not 0 <= getattr(self, name) < math.inf:
-                raise ParameterError(name, getattr(self, name), "finite and at least 0")
+            if not is_within(getattr(self, name), 0, sys.float_info.max):
+                raise ParameterError(name, getattr(self, name), "a number, finite and at least 0")
         for name in ("loose", "credit"):
-            if not all(0 <= share <= 1 for share in getattr(self, name).values()):
-                raise ParameterError(name, getattr(self, name), "shares in [0, 1]")
+            check_shares(name, getattr(self, name))
+        if not all(is_within(error, self.rtol, math.inf) and error > self.rtol for error in self.loose):
+            raise ParameterError("loose", self.loose, f"shares by errors larger than rtol = {self.rtol:g}")
 
     def judge(
         self,
@@ -116,10 +135,10 @@ class Values:
         hints: Mapping[str, Mapping[str, str]],
         shown: bool,
     ) -> Finding:
-        given = {name: np.asarray(value) for name, value in self.inputs(rng).items()}
-        right = np.atleast_1d(np.asarray(self.reference(**given), dtype=float))
+        given = drawn(self.inputs, rng)
+        right = truth(self._right, given)
         seed = int(rng.integers(1 << 32))
-        allowed = self._allowed(right, self.rtol)
+        allowed = self.allowed(right, self.rtol)
         first, mode = asked(callee, given, right, seed, allowed)
         if not first.ok:
             return _raised(callee.name, first, given, language, hints)
@@ -133,14 +152,19 @@ class Values:
         if any(array.ndim for array in turned):
             right = right[::-1]
         second = callee.call(*turned, mode=mode, seed=seed)
-        if not is_right(second, right, self._allowed(right, self.rtol)):
+        if not is_right(second, right, self.allowed(right, self.rtol)):
             text = joined(say(language, "not-repeatable"))
             return Finding(share=0.0, text=text, diagnosis="not-repeatable")
         if mode == "batch":
             return Finding(share=1.0, text=say(language, "full"))
         return Finding(share=1.0, text=say(language, "full-one-by-one"))
 
-    def _allowed(self, right: Array, rtol: float) -> Array:
+    @property
+    def _right(self) -> Callable[..., Any]:
+        return as_function(self.reference)
+
+    def allowed(self, right: Array, rtol: float) -> Array:
+        """Return the absolute errors that are allowed, if the relative one is ``rtol``."""
         size = np.abs(right)
         allowed: Array = np.maximum(np.maximum(rtol * size, self.ulps * np.spacing(size)), self.atol)
         return allowed
@@ -158,13 +182,18 @@ class Values:
     ) -> Finding:
         """Say what is wrong with numbers of the right shape."""
         share = max(
-            (s for r, s in self.loose.items() if close(answer, right, self._allowed(right, r)).all()),
+            (s for r, s in self.loose.items() if close(answer, right, self.allowed(right, r)).all()),
             default=0.0,
         )
         key, values = self._known(answer, right, given, good)
         if key:
             name = NAMES.get(key, key)
-            text = joined(say(language, key, **values), hints.get(name, {}).get(language, ""))
+            said = say(language, key, **values)
+            hint = "" if key == "zero" else hints.get(name, {}).get(language, "")
+            if key == "not-finite":
+                row = int(np.argmin(np.isfinite(answer).reshape(len(answer), -1).all(axis=1)))
+                said = at(f"{said}, ", row, given, language, "such-as")
+            text = joined(said, hint)
             return Finding(share=share, text=text, diagnosis=name, confidence=1.0)
         full, count = wrong_at(answer, right, given, good, language, shown=shown)
         found = self._diagnosed(answer.astype(float), right, given, language) if right.ndim == 1 else None
@@ -176,7 +205,7 @@ class Values:
             return Finding(share=share, text=joined(full), diagnosis=first.name)
         if first.confidence < SURE or found.ambiguous:
             likely = [clause(hint_for(each, hints, language, shown=shown)) for each in found.suspicions[:2]]
-            text = say(language, "one-of", names=" / ".join(likely))
+            text = guesses(likely, language)
         elif " + " in first.name and first.name not in hints:
             catalogue = {entry.name: entry.hint(language) for entry in CATALOGUE}
             both = [hints.get(each, {}).get(language, catalogue[each]) for each in first.name.split(" + ")]
@@ -207,12 +236,14 @@ class Values:
             value = "NaN" if math.isnan(worst) else "inf" if worst > 0 else "-inf"
             return "not-finite", {"value": value, "bad": rows(~finite), "count": len(finite)}
         numbers = answer.astype(float)
+        if len(right) > 1 and not numbers.any() and right.any():
+            return "zero", {}
         if len(right) > 1 and not np.ptp(numbers):
             return ("constant", {"value": f"{numbers.flat[0]:.6g}"}) if np.ptp(right) else ("", {})
         short = len(right) >= FEWEST and bool(np.all(numbers == numbers.astype(np.float32)))
         single = short or answer.dtype == np.float32
         eps = float(np.finfo(np.float32 if single else np.float64).eps)
-        terms = 0.0 if self.terms is None else np.abs(self.terms(**given))
+        terms = 0.0 if self.terms is None else np.abs(own("terms", self.terms, **given))
         near = np.maximum(np.maximum((SINGLE if single else DOUBLE) * size, SLACK * eps * terms), self.atol)
         if not np.all(np.abs(numbers - right) <= near):
             return "", {}
@@ -227,14 +258,21 @@ class Values:
     ) -> Diagnosis | None:
         """Return what explains the answers or, if nothing does, those where the right one is not 0."""
         size = len(right)
-        context = dict(self.context(**given)) if self.context is not None else {}
+        context = dict(own("context", self.context, **given)) if self.context is not None else {}
         every = {**given, **context}
         columns = {name: value for name, value in every.items() if _is_column(name, value, size)}
-        others = {name: np.asarray(variant(**given), dtype=float) for name, variant in self.variants.items()}
-        usual = (*CATALOGUE, *argument_mistakes(self.reference, given, right))
+        others = {
+            name: numbers(own(f"variants[{name!r}]", variant, **given), f"variants[{name!r}]")
+            for name, variant in self.variants.items()
+        }
+        usual = (*CATALOGUE, *argument_mistakes(self._right, given, right))
 
         def reference(**inputs: Any) -> Any:
-            return self.reference(**{name: inputs.get(name, given[name]) for name in given})
+            try:  # out of its domain it may give anything, which then explains nothing
+                values = np.asarray(self._right(**{n: inputs.get(n, given[n]) for n in given}), dtype=float)
+            except Exception:
+                return np.full(size, math.nan)
+            return values if values.shape == right.shape else np.full(size, math.nan)
 
         found: Diagnosis | None = None
         rtol = min(max(self.rtol, 2e-5 if answer.dtype == np.float32 else 1e-6), 0.1)
@@ -262,7 +300,7 @@ class Values:
             variants={name: values[lit] for name, values in others.items()},
             language=language,
             rtol=rtol,
-            catalogue=(*CATALOGUE, *argument_mistakes(self.reference, lit_given, right[lit])),
+            catalogue=(*CATALOGUE, *argument_mistakes(self._right, lit_given, right[lit])),
         )
         return partly if partly.suspicions else found
 
@@ -275,14 +313,17 @@ def _raised(
     hints: Mapping[str, Mapping[str, str]],
 ) -> Finding:
     """Say what a function did instead of answering, and why if its inputs leave the range of numbers."""
-    text = say(language, "call", function=name, error=result.error)
+    text = did(language, name, result.error)
     if result.raised in ("OverflowError", "ZeroDivisionError") and any(map(is_extreme, given.values())):
         hint = hints.get("out-of-range", {}).get(language, "")
         text = f"{text}. {sentence(hint)}" if hint else text
         return Finding(share=0.0, text=text, diagnosis="out-of-range", confidence=1.0)
+    if "bitwise_xor" in result.error or " for ^" in result.error:
+        return Finding(share=0.0, text=joined(say(language, "caret"), text))
     return Finding(share=0.0, text=text)
 
 
 def _is_column(name: str, value: Any, size: int) -> bool:
     """Return whether the diagnosis can take an input."""
-    return np.shape(value) in ((), (size,)) or (name in ("wi", "wo") and np.shape(value) == (size, 3))
+    fits = np.shape(value) in ((), (size,)) or (name in ("wi", "wo") and np.shape(value) == (size, 3))
+    return fits and bool(np.isfinite(value).all())

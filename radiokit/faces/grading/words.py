@@ -54,6 +54,12 @@ SENTENCES: Mapping[str, Words] = {
         "en": "the answer is {value} for all inputs: it does not depend on them",
         "ru": "ответ равен {value} для всех входных данных: он от них не зависит",
     },
+    "zero": {
+        "en": "the answer is 0 for all inputs: look for // in place of /, a rounding, or a condition that is "
+        "never true",
+        "ru": "ответ равен 0 для всех входных данных: поищите // вместо /, округление или условие, которое "
+        "никогда не выполняется",
+    },
     "not-finite": {
         "en": "gives {value} at {bad} of {count} {noun}",
         "ru": "даёт {value} для {bad} из {count} {noun}",
@@ -69,6 +75,10 @@ SENTENCES: Mapping[str, Words] = {
     "shape": {
         "en": "returns an array of shape {shape} where {expected} is right",
         "ru": "возвращает массив формы {shape}, а нужна форма {expected}",
+    },
+    "one-number": {
+        "en": "returns an array of shape {shape} where one number is right",
+        "ru": "возвращает массив формы {shape}, а нужно одно число",
     },
     "complex": {
         "en": "returns complex numbers, and real ones are asked for",
@@ -87,9 +97,20 @@ SENTENCES: Mapping[str, Words] = {
         "en": "at {inputs} it gives {value}",
         "ru": "при {inputs} получено {value}",
     },
+    "such-as": {"en": "such as {inputs}", "ru": "например при {inputs}"},
+    "number-shown": {"en": "it gives {value}, right is {right}", "ru": "получено {value}, верно {right}"},
+    "number-hidden": {"en": "it gives {value}", "ru": "получено {value}"},
     "number": {"en": "input no. {row}", "ru": "наборе данных № {row}"},
-    "both": {"en": "two mistakes at once: {names}", "ru": "две ошибки сразу: {names}"},
+    "both": {
+        "en": "your numbers fit two mistakes at once: {names}",
+        "ru": "такие числа дают две ошибки сразу: {names}",
+    },
     "one-of": {"en": "one of these: {names}", "ru": "одно из: {names}"},
+    "perhaps": {"en": "perhaps: {names}", "ru": "возможно: {names}"},
+    "caret": {
+        "en": "in Python a power is written x**2: ^ is another operation",
+        "ru": "степень в Python пишется x**2: знак ^ означает другое действие",
+    },
     "not-loaded": {"en": "the submission {error}", "ru": "работа не загрузилась: {error}"},
     "no-function": {
         "en": "defines no function {function}{guess}",
@@ -105,6 +126,10 @@ SENTENCES: Mapping[str, Words] = {
     "judge-failed": {
         "en": "the answer could not be judged ({error}); a teacher will look at it",
         "ru": "ответ не удалось оценить ({error}); его посмотрит преподаватель",
+    },
+    "assignment-failed": {
+        "en": "the question itself is at fault, not your answer; a teacher will look at it",
+        "ru": "ошибка в самом задании, а не в вашем ответе; его посмотрит преподаватель",
     },
     "not-graded": {"en": "not graded yet", "ru": "ещё не проверено"},
     "no-submission": {"en": "there is no submission: {error}", "ru": "работы нет: {error}"},
@@ -143,11 +168,15 @@ def say(language: str, key: str, **values: Any) -> str:
 def sentence(text: str) -> str:
     """Return a text as one sentence: a capital first, unless it is a symbol, and one full stop last.
 
-    >>> sentence("wrong at 1 of 2 inputs"), sentence("π is lost."), sentence("why?")
-    ('Wrong at 1 of 2 inputs.', 'π is lost.', 'Why?')
+    >>> sentence("wrong at 1 of 2 inputs"), sentence("π is lost."), sentence("why?"), sentence("p = 1/A")
+    ('Wrong at 1 of 2 inputs.', 'π is lost.', 'Why?', 'p = 1/A.')
+    >>> sentence("half_cosine returned None")
+    'half_cosine returned None.'
     """
     text = text.strip().rstrip(".;")
-    first = text[:1] if "Α" <= text[:1] <= "ω" else text[:1].upper()
+    word, _, rest = text.partition(" ")
+    symbol = "Α" <= text[:1] <= "ω" or "_" in word or rest.startswith("= ")
+    first = text[:1] if symbol else text[:1].upper()
     return f"{first}{text[1:]}{'' if text.endswith(('?', '!')) else '.'}" if text else ""
 
 

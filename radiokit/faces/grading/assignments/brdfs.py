@@ -2,87 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any
-
-import numpy as np
-
 from radiokit.faces.grading.assignment import Assignment
 from radiokit.faces.grading.assignments._brdfs import functions as brdf
 from radiokit.faces.grading.assignments._brdfs import hints
 from radiokit.faces.grading.assignments._brdfs import variants as wrong
+from radiokit.faces.grading.assignments._brdfs.common import SECONDS, exponents, parts, shares, text, values
 from radiokit.faces.grading.laws import Laws
 from radiokit.faces.grading.question import Part, Question
-from radiokit.faces.grading.values import Values
-from radiokit.faces.grading.words import Words
 
 __all__ = ["ASSIGNMENT"]
-
-Array = Any
-Generator = np.random.Generator
-Function = Callable[..., Array]
-Draw = Callable[[Generator, int], Array]
-
-SECONDS = 60.0
-"""For all calls of one part [s]: functions of single pairs take a few seconds before the laws."""
-
-LAWS: Words = {"en": "the laws of a BRDF", "ru": "законы ДФО"}
-
-LOOSE = {1e-6: 0.8, 1e-3: 0.5}
-"""What a value of fewer digits still earns, as float32 gives."""
-
-FAINT = 1e-9
-"""Below which value [sr⁻¹] a lobe's tail need not be right."""
-
-
-def _exponents(most: int) -> Draw:
-    return lambda rng, count: np.floor(np.exp(rng.uniform(0, np.log(most + 1), count)))
-
-
-def _shares(rng: Generator, count: int) -> Array:
-    return rng.uniform(0.05, 0.95, count)
-
-
-def _values(
-    inputs: Callable[[Generator], Mapping[str, Any]], reference: Function, variants: Mapping[str, Function]
-) -> Values:
-    return Values(inputs=inputs, reference=reference, variants=variants, loose=LOOSE, atol=FAINT)
-
-
-def _parts(
-    reference: Function, variants: Mapping[str, Function], laws: Laws | None = None, **parameters: Draw
-) -> tuple[Part, ...]:
-    """Return a question's parts: values that the student sees, and hard ones and laws that he does not."""
-    ordinary = _values(brdf.ordinary_pairs(**parameters), reference, variants)
-    hard = _values(brdf.hard_pairs(**parameters), reference, variants)
-    parts: tuple[Part, ...] = (
-        Part(name="ordinary", judge=ordinary, weight=2),
-        Part(name="hard", judge=hard, visibility="after_published"),
-    )
-    return (
-        parts
-        if laws is None
-        else (*parts, Part(name="laws", judge=laws, visibility="after_published", title=LAWS))
-    )
-
-
-CONVENTIONS: Words = {
-    "en": "`wi` points to the light and `wo` to the viewer. Both are unit vectors, arrays of shape `(3,)` "
-    "or `(N, 3)`; $z$ is the normal. A parameter is one number, or one number for each pair. Return one "
-    r"number for each pair of directions, in $\mathrm{sr}^{-1}$ and without the cosine of the lighting "
-    r"integral. A surface reflects only above the horizon: where $\cos\theta_i \le 0$ or $\cos\theta_o \le "
-    "0$, the value is 0.",
-    "ru": "`wi` направлен на источник света, `wo` — на наблюдателя. Оба — единичные векторы, массивы формы "
-    "`(3,)` или `(N, 3)`; ось $z$ — нормаль. Параметр — одно число или по числу на каждую пару. Верните по "
-    r"одному числу на каждую пару направлений, в $\mathrm{ср}^{-1}$ и без косинуса из интеграла освещения. "
-    r"Поверхность отражает только над горизонтом: если $\cos\theta_i \le 0$ или $\cos\theta_o \le 0$, "
-    "значение равно 0.",
-}
-
-
-def _text(english: str, russian: str) -> Words:
-    return {"en": f"{english}\n\n{CONVENTIONS['en']}", "ru": f"{russian}\n\n{CONVENTIONS['ru']}"}
-
 
 ASSIGNMENT = Assignment(
     name="brdfs",
@@ -124,13 +52,13 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
             signature="lambert(wi, wo, reflectance)",
             points=2,
             title={"en": "Diffuse reflection", "ru": "Диффузное отражение"},
-            text=_text(
+            text=text(
                 "The BRDF of a diffuse surface is the same for all directions. Which constant makes it "
                 r"reflect the share `reflectance` $= \rho$ of the light, whatever its direction?",
                 "ДФО диффузной поверхности одинакова для всех направлений. При какой константе она "
                 r"отражает долю `reflectance` $= \rho$ падающего света независимо от его направления?",
             ),
-            parts=_parts(
+            parts=parts(
                 brdf.by_row(brdf.lambert),
                 {},
                 Laws(
@@ -138,7 +66,7 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
                     reference=brdf.lambert,
                     least=0.5,
                 ),
-                reflectance=_shares,
+                reflectance=shares,
             ),
             hints=hints.LAMBERT_HINTS,
             seconds=SECONDS,
@@ -157,14 +85,14 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
                 r"\cos\alpha)$, где $\alpha$ — угол между `wi` и $r$. Горизонт здесь не важен. `wi` и `wo` "
                 "— единичные векторы формы `(3,)` или `(N, 3)`.",
             },
-            parts=_parts(brdf.mirror_cosine, wrong.MIRROR_COSINE),
+            parts=parts(brdf.mirror_cosine, wrong.MIRROR_COSINE),
             hints=hints.MIRROR_HINTS,
         ),
         Question(
             signature="phong_original(wi, wo, exponent, coefficient)",
             points=3,
             title={"en": "Phong's model of 1975", "ru": "Модель Фонга 1975 года"},
-            text=_text(
+            text=text(
                 r"Phong drew highlights as $k_s \cos^n\alpha$ for unit flux on a plane that faces the "
                 r"light, without the cosine of incidence. As a BRDF this is $f = k_s \cos^n\alpha / "
                 r"\cos\theta_i$, with $k_s$ = `coefficient` in $\mathrm{sr}^{-1}$, $n$ = `exponent`, and "
@@ -176,7 +104,7 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
                 r"$\cos\alpha$ — как в `mirror_cosine`. Запишите её как есть. Она нарушает оба закона: "
                 "выясните, почему и при каких углах.",
             ),
-            parts=_parts(
+            parts=parts(
                 brdf.by_row(brdf.phong_original),
                 wrong.PHONG_ORIGINAL,
                 Laws(
@@ -185,8 +113,8 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
                     reference=brdf.phong_original,
                     variants=wrong.PHONG_ORIGINAL,
                 ),
-                exponent=_exponents(100),
-                coefficient=_shares,
+                exponent=exponents(100),
+                coefficient=shares,
             ),
             hints=hints.ORIGINAL_HINTS,
             seconds=SECONDS,
@@ -195,7 +123,7 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
             signature="phong(wi, wo, exponent)",
             points=3,
             title={"en": "The modified Phong lobe", "ru": "Модифицированный лепесток Фонга"},
-            text=_text(
+            text=text(
                 r"Drop the division, and the lobe $f = N(n) \cos^n\alpha$ is reciprocal. Find the $N(n)$ "
                 r"for which it reflects exactly all light at normal incidence: there $\alpha = \theta$, and "
                 r"$\int f \cos\theta\, \mathrm{d}\omega = 1$ over the hemisphere. $n$ = `exponent`.",
@@ -203,7 +131,7 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
                 r"котором он отражает ровно весь свет, падающий по нормали: тогда $\alpha = \theta$ и $\int "
                 r"f \cos\theta\, \mathrm{d}\omega = 1$ по полусфере. $n$ = `exponent`.",
             ),
-            parts=_parts(
+            parts=parts(
                 brdf.by_row(brdf.phong),
                 wrong.PHONG,
                 Laws(
@@ -212,7 +140,7 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
                     variants=wrong.PHONG,
                     least=0.5,
                 ),
-                exponent=_exponents(100),
+                exponent=exponents(100),
             ),
             hints=hints.PHONG_HINTS,
             seconds=SECONDS,
@@ -231,14 +159,14 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
                 "горизонта. `wi` и `wo` — единичные векторы формы `(3,)` или `(N, 3)`; они могут быть "
                 "противоположны.",
             },
-            parts=_parts(brdf.half_cosine, wrong.HALF_COSINE),
+            parts=parts(brdf.half_cosine, wrong.HALF_COSINE),
             hints=hints.HINTS,
         ),
         Question(
             signature="blinn_phong(wi, wo, exponent)",
             points=3,
             title={"en": "Blinn-Phong, normalised", "ru": "Нормированная модель Блинна-Фонга"},
-            text=_text(
+            text=text(
                 r"Blinn's lobe is $f = N(n) \cos^n\delta$, with $n$ = `exponent` and $\delta$ the angle "
                 r"between half vector and normal. The constant met in books, $(n + 8)/(8\pi)$, gains 7.5 % "
                 "of energy at $n = 10$. Find the one for which exactly all light is reflected at normal "
@@ -250,7 +178,7 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
                 r"тогда $\delta = \theta/2$. (При $c = \cos\delta$: $\cos\theta = 2c^2 - 1$ и "
                 r"$\mathrm{d}\omega = 8\pi\, c\, |\mathrm{d}c|$, где $c$ меняется от $1/\sqrt 2$ до 1.)",
             ),
-            parts=_parts(
+            parts=parts(
                 brdf.by_row(brdf.blinn_phong),
                 wrong.BLINN_PHONG,
                 Laws(
@@ -259,7 +187,7 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
                     variants=wrong.BLINN_PHONG,
                     least=0.5,
                 ),
-                exponent=_exponents(100),
+                exponent=exponents(100),
             ),
             hints=hints.BLINN_HINTS,
             seconds=SECONDS,
@@ -279,10 +207,10 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
                 "0, если оба значения равны 0. Испытайте её на своих моделях.",
             },
             parts=(
-                Part(name="ordinary", judge=_values(brdf.unlike, brdf.asymmetry, wrong.ASYMMETRY), weight=2),
+                Part(name="ordinary", judge=values(brdf.unlike, brdf.asymmetry, wrong.ASYMMETRY), weight=2),
                 Part(
                     name="hard",
-                    judge=_values(brdf.hard_values, brdf.asymmetry, wrong.ASYMMETRY),
+                    judge=values(brdf.hard_values, brdf.asymmetry, wrong.ASYMMETRY),
                     visibility="after_published",
                 ),
             ),
@@ -292,7 +220,7 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
             signature="mixed(wi, wo, diffuse, specular, exponent)",
             points=3,
             title={"en": "Diffuse and specular together", "ru": "Диффузное и зеркальное вместе"},
-            text=_text(
+            text=text(
                 "A surface reflects the share $k_d$ = `diffuse` diffusely, and a share in the modified "
                 r"Phong lobe: $f = k_d/\pi + k_s N(n) \cos^n\alpha$, with $k_s$ = `specular`, $n$ = "
                 "`exponent` and the $N(n)$ of `phong`. Users may ask for too much: where $k_d + k_s > 1$, "
@@ -302,7 +230,7 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
                 "`exponent`, а $N(n)$ — из `phong`. Пользователь может задать слишком много: если $k_d + "
                 "k_s > 1$, разделите обе доли на их сумму, чтобы энергия сохранялась.",
             ),
-            parts=_parts(
+            parts=parts(
                 brdf.mixed_values,
                 wrong.MIXED,
                 Laws(
@@ -311,9 +239,9 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
                     variants=wrong.MIXED,
                     least=0.5,
                 ),
-                diffuse=_shares,
-                specular=_shares,
-                exponent=_exponents(100),
+                diffuse=shares,
+                specular=shares,
+                exponent=exponents(100),
             ),
             hints=hints.PHONG_HINTS,
             seconds=SECONDS,

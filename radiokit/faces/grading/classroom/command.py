@@ -19,13 +19,16 @@ def grade_class(
     folder: Annotated[
         Path, typer.Argument(metavar="DIR", help="Folder of submissions; Moodle's and Canvas's exports, too.")
     ],
-    assignment: Annotated[str, typer.Option(help="An assignment's name, or a file of your own.")],
-    out: Annotated[Path, typer.Option(help="Folder of the results.")],
+    assignment: Annotated[str, typer.Option(help="radiometry, brdfs, shading, or FILE.py of your own.")],
+    out: Annotated[Path, typer.Option(help="Folder of the results: class.csv, class.json and results/.")],
     workers: Annotated[
         int | None, typer.Option(help="Local processes; as many as there are processors by default.")
     ] = None,
     scheduler: Annotated[
-        str | None, typer.Option(help="Address of a Dask scheduler whose workers are sent the submissions.")
+        str | None,
+        typer.Option(
+            help="Address of a Dask scheduler, whose workers are sent the submissions and the secret."
+        ),
     ] = None,
     secret_file: Annotated[
         Path | None,
@@ -35,13 +38,17 @@ def grade_class(
         Path | None,
         typer.Option(help="CSV file with the columns entry and student; else the entry's name counts."),
     ] = None,
-    language: Annotated[str, typer.Option(help="en or ru.")] = "en",
-    again: Annotated[bool, typer.Option("--again", help="Grade all again.")] = False,
-    html: Annotated[bool, typer.Option("--html", help="Also write a page for each student.")] = False,
+    language: Annotated[str, typer.Option(help="Of the feedback: en or ru.")] = "en",
+    again: Annotated[
+        bool, typer.Option("--again", help="Grade all again, also what has not changed.")
+    ] = False,
+    html: Annotated[bool, typer.Option("--html", help="Also write a page for each student, html/.")] = False,
     csv: Annotated[Path | None, typer.Option(help="Also write class.csv here.")] = None,
     json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
 ) -> None:
     """Grade a folder of submissions; a run that was stopped goes on where it was.
+
+    For example: radiokit grade-class submissions --assignment radiometry --out grades --html
 
     Exit codes: 0 all graded, 2 bad usage or input, 3 some need a person.
     """
@@ -97,6 +104,7 @@ def _show(found: Any) -> None:
     write(
         f"{summary['entries']} entries: {summary['handed_in']} handed in, {missing} not, "
         f"{summary['need_review']} for a person to look at"
+        + (f": {found.folder / 'class.csv'} says why" if summary["need_review"] else "")
     )
     if found.graded:
         by = f"{found.workers} workers" if found.workers > 1 else "1 worker" if found.workers else "a cluster"

@@ -7,7 +7,7 @@ from typing import Any
 
 from radiokit.faces.grading.words import Words
 
-__all__ = ["REASONS", "NoSubmissionError", "reason"]
+__all__ = ["NOTHING", "REASONS", "NoSubmissionError", "reason"]
 
 REASONS: Mapping[str, Words] = {
     "absent": {"en": "nothing was handed in", "ru": "ничего не сдано"},
@@ -19,7 +19,10 @@ REASONS: Mapping[str, Words] = {
         "en": "{count} files end in .py or .ipynb, where there may be one, or one named {name}",
         "ru": "файлов .py и .ipynb сдано {count}, а нужен один, или один с именем {name}",
     },
-    "huge": {"en": "it is larger than {limit} MiB", "ru": "она больше {limit} МиБ"},
+    "huge": {
+        "en": "it is larger than {limit} MiB (a notebook is smaller without its outputs)",
+        "ru": "она больше {limit} МиБ (тетрадь меньше, если очистить вывод ячеек)",
+    },
     "crowded": {"en": "it has more than {limit} files", "ru": "в ней больше {limit} файлов"},
     "link": {
         "en": "it is a link that leads elsewhere",
@@ -43,6 +46,10 @@ REASONS: Mapping[str, Words] = {
 }
 
 
+NOTHING = ("absent", "empty")
+"""The reasons for which nobody need look: there is nothing that could be graded."""
+
+
 class NoSubmissionError(Exception):
     """An entry has no submission that can be graded; ``key`` is one of ``REASONS``."""
 
@@ -60,6 +67,6 @@ def reason(language: str, key: str, **values: Any) -> str:
     """Return a reason.
 
     >>> reason("ru", "huge", limit=16)
-    'она больше 16 МиБ'
+    'она больше 16 МиБ (тетрадь меньше, если очистить вывод ячеек)'
     """
     return REASONS[key][language].format(**values)

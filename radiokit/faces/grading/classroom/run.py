@@ -15,13 +15,14 @@ from radiokit.faces.grading.classroom.contents import read_submission
 from radiokit.faces.grading.classroom.discovery import Entry, discover, read_roster
 from radiokit.faces.grading.classroom.fingerprint import code_digest, fingerprint, secret_digest
 from radiokit.faces.grading.classroom.pool import TRIES, completed
-from radiokit.faces.grading.classroom.reasons import NoSubmissionError
+from radiokit.faces.grading.classroom.reasons import NOTHING, NoSubmissionError
 from radiokit.faces.grading.classroom.reports import write_nameless, write_reports, write_timings
 from radiokit.faces.grading.classroom.store import Store
 from radiokit.faces.grading.classroom.task import Done, Order, Task, assignment_of, failed, perform
 from radiokit.faces.grading.formats.writing import json_text
 from radiokit.faces.grading.grades import Grade
 from radiokit.faces.grading.limits import Limits
+from radiokit.faces.grading.rehearsal import rehearse
 from radiokit.faces.grading.unfinished import no_submission
 from radiokit.faces.grading.words import checked_language
 from radiokit.faces.workers import available_workers
@@ -131,6 +132,8 @@ def grade_class(
     source, file = assignment_source(assignment)
     order = Order(source, file, secret, checked_language(language), limits, code_digest())
     work = assignment_of(order)
+    if Path(assignment).suffix == ".py":
+        rehearse(work)
     students = None if roster is None else read_roster(roster)
     ignored = [Path(each) for each in (out, roster) if each is not None]
     entries = discover(folder, roster=students, ignore=ignored)
@@ -197,7 +200,7 @@ class _Run:
             try:
                 found = read_submission(entry, self.name)
             except NoSubmissionError as error:
-                self._absent(place, error.text(self.order.language))
+                self._absent(place, error)
                 continue
             mark = self._mark(entry, found.content, found.suffix)
             stored = self.store.read(entry.key)
@@ -233,10 +236,16 @@ class _Run:
             code=self.order.code,
         )
 
-    def _absent(self, place: int, text: str) -> None:
-        """Store that there is no submission."""
+    def _absent(self, place: int, error: NoSubmissionError) -> None:
+        """Store that there is no submission; what was handed in and cannot be taken, a person looks at."""
         entry, language = self.entries[place], self.order.language
-        grade = no_submission(assignment_of(self.order), text, student=entry.student, language=language)
+        grade = no_submission(
+            assignment_of(self.order),
+            error.text(language),
+            student=entry.student,
+            language=language,
+            review=error.key not in NOTHING,
+        )
         self.absent.add(place)
         self._write(place, self._mark(entry, b"", ""), grade.to_json())
         self._advance()

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import radiokit
 from radiokit.faces.grading.assignment import Assignment, assignment_from_source, assignment_source
+from radiokit.faces.grading.rehearsal import rehearse
 from radiokit.faces.grading.words import checked_language
 from radiokit.facts.errors import ParameterError, TargetError
 
@@ -129,7 +130,9 @@ def gradescope_zip(
             "assignment", assignment.name, "its name or its file, which the zip file takes along"
         )
     source, name = assignment_source(assignment)
-    assignment_from_source(source, name)
+    work = assignment_from_source(source, name)
+    if Path(assignment).suffix == ".py":
+        rehearse(work)
     python = f"{sys.version_info.major}.{sys.version_info.minor}"
     files: dict[str, tuple[bytes, int]] = {
         "setup.sh": (_SETUP.format(python=python).encode(), 0o755),

@@ -48,7 +48,7 @@ def to_markdown(grade: Grade, *, reveal: bool = False) -> str:
                 _escape(found if line.diagnosis else line.text),
             ]
             lines.append(f"| {' | '.join(cells)} |")
-        lines += ["", *(f"> {_escape(note)}" for note in notes_of(grade, question))]
+        lines += ["", *(f"> {_escape(note)}" for note in notes_of(grade, question, reveal=reveal))]
     return "\n".join(lines).rstrip() + "\n"
 
 

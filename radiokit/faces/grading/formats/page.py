@@ -100,7 +100,7 @@ def _question(grade: Grade, question: QuestionGrade, reveal: bool) -> str:
     head = "".join(f'<th scope="col">{phrase(language, each)}</th>' for each in ("part", "points", "finding"))
     return (
         f'<section>\n<h2><span class="score">{score}</span>{escape(question.title)} '
-        f"<code>{escape(question.name)}</code></h2>\n{_notes(notes_of(grade, question))}"
+        f"<code>{escape(question.name)}</code></h2>\n{_notes(notes_of(grade, question, reveal=reveal))}"
         f"<table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{''.join(rows)}</tbody>\n</table>\n</section>\n"
     )
 

@@ -96,8 +96,10 @@ def line_of(part: PartGrade, language: str, *, reveal: bool = False) -> Line:
     )
 
 
-def notes_of(grade: Grade, question: QuestionGrade | None = None) -> list[str]:
-    """Return what a person should know of a whole grade, or of one question."""
+def notes_of(grade: Grade, question: QuestionGrade | None = None, *, reveal: bool = False) -> list[str]:
+    """Return what a person should know of a whole grade, or of a question; if ``reveal``, why, too."""
     if question is not None:
-        return [phrase(grade.language, "review")] if question.review else []
+        told = phrase(grade.language, "review")
+        cause = f" ({question.review})" if reveal and question.review not in grade.problems else ""
+        return [told + cause] if question.review else []
     return [*grade.problems, *([] if grade.complete else [phrase(grade.language, "incomplete")])]

@@ -69,7 +69,11 @@ def to_csv(grades: Iterable[Grade], *, excel: str = "") -> str:
 
 
 def _note(grade: Grade) -> str:
-    reviews = [f"{question.name}: {question.review}" for question in grade.questions if question.review]
+    reviews = [
+        f"{question.name}: {question.review}"
+        for question in grade.questions
+        if question.review and question.review not in grade.problems  # which are said already
+    ]
     return "; ".join([*([] if grade.complete else ["incomplete"]), *grade.problems, *reviews])
 
 

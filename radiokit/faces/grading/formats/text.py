@@ -34,7 +34,7 @@ def to_text(grade: Grade, *, reveal: bool = False) -> str:
             line = line_of(part, grade.language, reveal=reveal)
             sign = _SIGNS[line.standing]
             lines.append(f"    {sign} {line.title}: {line.score} / {line.points}  {line.text}")
-        lines += [f"    {note}" for note in notes_of(grade, question)]
+        lines += [f"    {note}" for note in notes_of(grade, question, reveal=reveal)]
     return "\n".join(lines) + "\n"
 
 
@@ -49,7 +49,7 @@ def to_rich(grade: Grade, *, reveal: bool = False) -> Table:
     table.add_column(phrase(grade.language, "finding"), overflow="fold")
     for question in grade.questions:
         score = f"{number(question.score)} / {number(question.points)}"
-        notes = "".join(f"\n[yellow]{escape(note)}[/]" for note in notes_of(grade, question))
+        notes = "".join(f"\n[yellow]{escape(note)}[/]" for note in notes_of(grade, question, reveal=reveal))
         table.add_row(
             f"[bold]{escape(question.name)}[/]",
             f"[bold]{score}[/]",

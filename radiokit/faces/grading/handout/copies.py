@@ -5,7 +5,7 @@ A student's copy is made without the file of solutions, so nothing of it can be 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from radiokit.faces.grading.assignment import Assignment
 from radiokit.faces.grading.handout.cells import Cell, code, markdown
@@ -14,7 +14,7 @@ from radiokit.faces.grading.handout.worked import INDENT, Solution
 from radiokit.faces.grading.question import Question
 from radiokit.faces.grading.words import checked_language
 
-__all__ = ["BLANK", "header", "instructor_cells", "intro", "question_text", "student_cells"]
+__all__ = ["answer", "instructor_cells", "intro", "question_text", "student_cells"]
 
 BLANK = f"{INDENT}..."
 
@@ -53,8 +53,8 @@ def _cells(assignment: Assignment, language: str, checked_by: str, solution: Sol
         cells.append(code("helpers", solution.helpers))
     for number, question in enumerate(assignment.questions, start=1):
         cells.append(question_text(question, number, language))
-        body = BLANK if solution is None else solution.bodies[question.name]
-        cells.append(code(f"{question.name}-answer", f"{header(question, language)}\n{body}"))
+        body = None if solution is None else solution.bodies.__getitem__
+        cells.append(code(f"{question.name}-answer", answer(question, language, body)))
         if checked_by:
             cells.append(code(f"{question.name}-check", f"check({question.name})"))
     if checked_by:
@@ -80,7 +80,10 @@ def question_text(question: Question, number: int, language: str) -> Cell:
     return markdown(f"{question.name}-text", "\n\n".join(texts))
 
 
-def header(question: Question, language: str) -> str:
-    """Return a function's first lines: its signature and its docstring."""
+def answer(question: Question, language: str, body: Callable[[str], str] | None = None) -> str:
+    """Return the functions of a question, the first with a docstring, each with ``body(name)`` or blank."""
     title = question.title[language].replace("\\", r"\\").replace('"""', "'''").rstrip('"')
-    return f'def {question.signature}:\n{INDENT}"""{title}."""'
+    documented = f'def {question.signature}:\n{INDENT}"""{title}."""'
+    headers = [documented, *(f"def {signature}:" for signature in question.also)]
+    pairs = zip(headers, question.functions, strict=True)
+    return "\n\n\n".join(f"{header}\n{body(name) if body else BLANK}" for header, name in pairs)

@@ -6,11 +6,12 @@ Its test cells hold no answers: see ``handout.kernel``. What they earn is found 
 from __future__ import annotations
 
 import json
+from functools import partial
 from typing import Any
 
 from radiokit.faces.grading.assignment import Assignment
 from radiokit.faces.grading.handout.cells import Cell, code, markdown
-from radiokit.faces.grading.handout.copies import BLANK, header, intro, question_text
+from radiokit.faces.grading.handout.copies import answer, intro, question_text
 from radiokit.faces.grading.handout.kernel import GRADED, LATER
 from radiokit.faces.grading.handout.texts import tell
 from radiokit.faces.grading.handout.worked import INDENT, Solution
@@ -80,21 +81,19 @@ def _question(
     question: Question, number: int, language: str, solution: Solution | None, graded_by: str
 ) -> list[Cell]:
     name, text = question.name, question_text(question, number, language)
-    body = BLANK
-    if solution is not None:
-        body = f"{INDENT}### BEGIN SOLUTION\n{solution.bodies[name]}\n{INDENT}### END SOLUTION"
+    functions = answer(question, language, None if solution is None else partial(_marked, solution))
     given = {"assignment": graded_by, "language": language, "seconds": _seconds(question)}
     listed = ", ".join(f"{key}={json.dumps(value, ensure_ascii=False)}" for key, value in given.items())
     test = f'import radiokit as rk\n\nrk.grading.kernel_points("{name}", {listed})'
     return [
         markdown(text.key, text.source, **_metadata(f"{name}-text")),
-        code(
-            f"{name}-answer",
-            f"{header(question, language)}\n{body}",
-            **_metadata(f"{name}-answer", solution=True),
-        ),
+        code(f"{name}-answer", functions, **_metadata(f"{name}-answer", solution=True)),
         code(f"{name}-test", test, **_metadata(f"{name}-test", points=question.points)),
     ]
+
+
+def _marked(solution: Solution, name: str) -> str:
+    return f"{INDENT}### BEGIN SOLUTION\n{solution.bodies[name]}\n{INDENT}### END SOLUTION"
 
 
 def _seconds(question: Question) -> float:

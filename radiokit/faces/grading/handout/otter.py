@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 from radiokit.faces.grading.assignment import Assignment
 from radiokit.faces.grading.handout.cells import Cell, code, markdown, raw
-from radiokit.faces.grading.handout.copies import BLANK, header, intro, question_text
+from radiokit.faces.grading.handout.copies import answer, intro, question_text
 from radiokit.faces.grading.handout.texts import tell
 from radiokit.faces.grading.handout.worked import INDENT, Solution
 from radiokit.faces.grading.question import Part, Question
@@ -74,11 +75,8 @@ def _question(
     question: Question, number: int, language: str, solution: Solution | None, helpers: str, graded_by: str
 ) -> list[Cell]:
     name = question.name
-    if solution is None:
-        answer = f"{header(question, language)}\n{BLANK}"
-    else:
-        marked = f"{INDENT}# BEGIN SOLUTION\n{solution.bodies[name]}\n{INDENT}# END SOLUTION"
-        answer = "\n".join(each for each in (helpers, f"{header(question, language)}\n{marked}") if each)
+    functions = answer(question, language, None if solution is None else partial(_marked, solution))
+    functions = "\n".join(each for each in (helpers, functions) if each)
     tests = [
         code(f"{name}-test-{part.name}", _test(question, part, language, graded_by))
         for part in question.parts
@@ -86,10 +84,14 @@ def _question(
     return [
         raw(f"{name}-begin", f"# BEGIN QUESTION\nname: {name}"),
         question_text(question, number, language),
-        *_block(name, "SOLUTION", [code(f"{name}-answer", answer)]),
+        *_block(name, "SOLUTION", [code(f"{name}-answer", functions)]),
         *_block(name, "TESTS", tests),
         raw(f"{name}-end", "# END QUESTION"),
     ]
+
+
+def _marked(solution: Solution, name: str) -> str:
+    return f"{INDENT}# BEGIN SOLUTION\n{solution.bodies[name]}\n{INDENT}# END SOLUTION"
 
 
 def _block(name: str, kind: str, cells: Sequence[Cell]) -> list[Cell]:

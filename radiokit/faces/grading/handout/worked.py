@@ -20,7 +20,7 @@ INDENT = "    "
 class Solution:
     """A file of solutions.
 
-    ``bodies`` are the functions' bodies by the question's name, without their docstrings, indented by four;
+    ``bodies`` are the functions' bodies by the functions' names, without their docstrings, indented by four;
     ``helpers`` is all else that the file defines and imports.
     """
 
@@ -34,7 +34,8 @@ def read_solution(path: str | Path, assignment: Assignment) -> Solution:
     Raises
     ------
     TargetError
-        When the file is not there or no Python, has no function for a question, or one of other parameters.
+        When the file is not there or no Python, lacks a function that is asked for, or has one of other
+        parameters.
 
     >>> import tempfile
     >>> from radiokit.faces.grading.assignment import load_assignment
@@ -57,18 +58,19 @@ def read_solution(path: str | Path, assignment: Assignment) -> Solution:
     lines = text.splitlines()
     functions = {node.name: node for node in tree.body if isinstance(node, ast.FunctionDef)}
     bodies = {}
-    for question in assignment.questions:
-        node = functions.get(question.name)
+    wanted = {name: given for question in assignment.questions for name, given in question.functions.items()}
+    for name, parameters in wanted.items():
+        node = functions.get(name)
         if node is None:
-            raise TargetError(f"{file.name} defines no function {question.name}")
+            raise TargetError(f"{file.name} defines no function {name}")
         listed = (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs)
         named = tuple(each.arg for each in listed)
-        if named != question.parameters or node.args.vararg or node.args.kwarg:
-            shown, asked = ", ".join(named), ", ".join(question.parameters)
-            raise TargetError(f"{file.name}: {question.name} has parameters ({shown}), not ({asked})")
+        if named != parameters or node.args.vararg or node.args.kwarg:
+            shown, asked = ", ".join(named), ", ".join(parameters)
+            raise TargetError(f"{file.name}: {name} has parameters ({shown}), not ({asked})")
         if node.decorator_list:
-            raise TargetError(f"{file.name}: {question.name} has a decorator, which a blank has not")
-        bodies[question.name] = _body(node, lines)
+            raise TargetError(f"{file.name}: {name} has a decorator, which a blank has not")
+        bodies[name] = _body(node, lines)
     return Solution(bodies=bodies, helpers=_helpers(tree, lines, set(bodies)))
 
 
@@ -100,15 +102,15 @@ def _is_header(lines: list[str]) -> bool:
     return True
 
 
-def _helpers(tree: ast.Module, lines: list[str], questions: set[str]) -> str:
-    """Return what a file has beside the questions' functions and its docstring, with the comments before."""
+def _helpers(tree: ast.Module, lines: list[str], wanted: set[str]) -> str:
+    """Return all else in a file but its docstring, with the comments before."""
     kept: list[str] = []
     start = 0
     for number, node in enumerate(tree.body):
         assert node.end_lineno is not None
         docstring = number == 0 and isinstance(node, ast.Expr) and ast.get_docstring(tree) is not None
         future = isinstance(node, ast.ImportFrom) and node.module == "__future__"
-        asked = isinstance(node, ast.FunctionDef) and node.name in questions
+        asked = isinstance(node, ast.FunctionDef) and node.name in wanted
         guarded = isinstance(node, ast.If) and "__name__" in ast.unparse(node.test)
         if not (docstring or future or asked or guarded):
             kept += lines[start : node.end_lineno]

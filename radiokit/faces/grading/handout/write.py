@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from radiokit.faces.grading.assignment import Assignment, load_assignment
+from radiokit.faces.grading.assignment import Assignment
 from radiokit.faces.grading.handout.cells import Cell, notebook, script
 from radiokit.faces.grading.handout.copies import instructor_cells, student_cells
 from radiokit.faces.grading.handout.nbgrader import CONFIG, STEP, nbgrader_cells
 from radiokit.faces.grading.handout.otter import FOLDER, otter_cells
 from radiokit.faces.grading.handout.worked import Solution, read_solution
+from radiokit.faces.grading.rehearsal import rehearsed
 from radiokit.faces.grading.words import checked_language
 from radiokit.facts.errors import TargetError
 
@@ -58,7 +59,7 @@ def write_handout(
         When there is no such assignment, language or solution, or a file is there and differs, or a
         course's configuration lacks what it needs.
     """
-    work = load_assignment(assignment)
+    work = rehearsed(assignment)
     for language in languages:
         checked_language(language)
     solved = None if solution is None else read_solution(solution, work)

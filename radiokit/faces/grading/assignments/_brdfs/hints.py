@@ -9,6 +9,10 @@ from radiokit.faces.grading.words import Words
 __all__ = ["BLINN_HINTS", "HINTS", "LAMBERT_HINTS", "MIRROR_HINTS", "ORIGINAL_HINTS", "PHONG_HINTS"]
 
 HINTS: Mapping[str, Words] = {
+    "horizon-not-clamped": {
+        "en": "Your value is not 0 where wi or wo is not above the horizon: both are to be looked at.",
+        "ru": "У вас не 0 там, где wi или wo не выше горизонта: проверять нужно оба направления.",
+    },
     "mirror-about-wrong-axis": {
         "en": "You mirrored at the surface, (x, y, −z), which ends below it: about the normal it is (−x, "
         "−y, z).",
@@ -166,10 +170,10 @@ PHONG_HINTS: Mapping[str, Words] = {
         "нормали и разделите на результат.",
     },
     "horizon-not-clamped": {
-        "en": "Your value is not 0 where it should be: below the horizon, and where cos α < 0. There an "
-        "even power or |cos α| makes a second lobe.",
-        "ru": "У вас не 0 там, где он должен быть: под горизонтом и при cos α < 0, где чётная степень или "
-        "|cos α| даёт второй лепесток.",
+        "en": "Your value is not 0 where it should be: where wi or wo is not above the horizon, or where "
+        "cos α < 0, so that an even power or |cos α| makes a second lobe.",
+        "ru": "У вас не 0 там, где он должен быть: где wi или wo не выше горизонта либо где cos α < 0, так "
+        "что чётная степень или |cos α| даёт второй лепесток.",
     },
     "cosine-forgotten": {
         "en": "You divided by cos θi, as in the model of 1975: the modified lobe has no cosine below, and "

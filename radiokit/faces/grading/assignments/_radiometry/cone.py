@@ -62,6 +62,14 @@ $10^{-9}$.
     },
     credit={"doubled": 0.25, "halved": 0.25, "full-angle": 0.25, "angle-unit": 0.25},
     hints={
+        "pi-too-few": {
+            "en": "You forgot π: the integral over φ gives 2π",
+            "ru": "Вы забыли π: интеграл по φ равен 2π",
+        },
+        "two-pi-too-few": {
+            "en": "You forgot the integral over φ: it gives 2π",
+            "ru": "Вы забыли интеграл по φ: он равен 2π",
+        },
         "doubled": {
             "en": "2π stands before 1 − cos α, not 4π: try α = π, which is the whole sphere",
             "ru": "Перед 1 − cos α стоит 2π, а не 4π: проверьте на α = π, то есть на всей сфере",

@@ -60,6 +60,10 @@ too.
     },
     credit={"four-pi-too-many": 0.25, "doubled": 0.25, "four-too-many": 0.25},
     hints={
+        "pi-too-many": {
+            "en": "You forgot π: the flux is spread over the sphere's area, 4πd²",
+            "ru": "Вы забыли π: поток проходит через всю сферу площадью 4πd²",
+        },
         "volume-for-area": {
             "en": "You divided by the volume of the sphere: the flux passes through its area, 4πd²",
             "ru": "Вы разделили на объём шара: поток проходит через площадь сферы, 4πd²",

@@ -85,6 +85,14 @@ $$E = \frac{I \cos\theta}{d^2}, \qquad E = 0, \text{ если источник �
     variants={},
     credit={"horizon-not-clamped": 0.5},
     hints={
+        "sine-forgotten": {
+            "en": "You divided by sin θ, as the cotangent does: the cosine alone belongs there",
+            "ru": "У вас деление на sin θ, как в котангенсе: нужен только косинус",
+        },
+        "sine-twice": {
+            "en": "You have a sin θ too many: the cosine alone belongs there",
+            "ru": "У вас лишний sin θ: нужен только косинус",
+        },
         "cosine-twice": {
             "en": "The cosine enters once: the area that a beam falls on is 1/cos θ as large",
             "ru": "Косинус входит один раз: пучок ложится на площадь в 1/cos θ раз большую",

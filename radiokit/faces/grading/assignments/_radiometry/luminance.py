@@ -51,6 +51,14 @@ def _sums(exitance: FloatArray, efficiency: FloatArray) -> FloatArray:
     return result
 
 
+def _ends(wavelength: FloatArray, y: FloatArray, end: int) -> FloatArray:
+    """Return the integral by the value at one end of each step, 0 or 1."""
+    steps = np.abs(np.diff(wavelength, axis=-1))
+    heights = y[:, end : y.shape[1] - 1 + end]
+    result: FloatArray = EFFICACY / math.pi * np.sum(heights * steps, axis=-1)
+    return result
+
+
 QUESTION = put_together(
     "luminance(wavelength, exitance, efficiency)",
     title={"en": "Photometry: the luminance of a spectrum", "ru": "Фотометрия: яркость в кд/м² по спектру"},
@@ -96,6 +104,11 @@ $$M_v = K_m \int V(\lambda)\, M_\lambda \, d\lambda, \qquad K_m = 683\ \text{л�
         "rectangle-rule": lambda wavelength, exitance, efficiency: (
             _sums(exitance, efficiency) * (wavelength[:, 1] - wavelength[:, 0])
         ),
+        "one-end": lambda wavelength, exitance, efficiency: _ends(wavelength, exitance * efficiency, 0),
+        "other-end": lambda wavelength, exitance, efficiency: _ends(wavelength, exitance * efficiency, 1),
+        "last-step-forgotten": lambda wavelength, exitance, efficiency: _luminance(
+            wavelength[:, :-1], exitance[:, :-1], efficiency[:, :-1]
+        ),
         "sign-of-step": lambda wavelength, exitance, efficiency: (
             _luminance(wavelength, exitance, efficiency) * np.sign(wavelength[:, 1] - wavelength[:, 0])
         ),
@@ -105,6 +118,22 @@ $$M_v = K_m \int V(\lambda)\, M_\lambda \, d\lambda, \qquad K_m = 683\ \text{л�
     },
     credit={"pi-too-many": 0.5, "watts-for-lumens": 0.5, "rectangle-rule": 0.5},
     hints={
+        "one-end": {
+            "en": "You took the value at one end of each step: a trapezoid takes the mean of both ends",
+            "ru": "Вы взяли значение на одном конце шага: в трапеции берут среднее двух концов",
+        },
+        "other-end": {
+            "en": "You took the value at the far end of each step: a trapezoid takes the mean of both ends",
+            "ru": "Вы взяли значение на дальнем конце шага: в трапеции берут среднее двух концов",
+        },
+        "last-step-forgotten": {
+            "en": "You left out the last step: N points have N − 1 steps",
+            "ru": "Вы пропустили последний шаг: у N точек N − 1 шагов",
+        },
+        "doubled": {
+            "en": "Your answer is twice the right one: a trapezoid takes the mean of its ends, not the sum",
+            "ru": "Ваш ответ вдвое больше верного: в трапеции берут среднее двух концов, а не сумму",
+        },
         "pi-too-many": {
             "en": "You gave the luminous exitance M_v: a Lambertian surface has the luminance L_v = M_v/π",
             "ru": "Вы дали светимость M_v: яркость ламбертовой поверхности L_v = M_v/π",

@@ -92,6 +92,12 @@ $$\Delta\omega = \frac{A \cos\theta'}{d^2} .$$
         "area-forgotten": lambda radiance, area, distance, theta, theta_light: _patch(
             radiance, 1 + 0 * area, distance, theta, theta_light
         ),
+        "theta-twice": lambda radiance, area, distance, theta, theta_light: _patch(
+            radiance, area, distance, theta, theta
+        ),
+        "theta-light-twice": lambda radiance, area, distance, theta, theta_light: _patch(
+            radiance, area, distance, theta_light, theta_light
+        ),
         "both-cosines-forgotten": lambda radiance, area, distance, theta, theta_light: (
             radiance * area / distance**2
         ),
@@ -104,6 +110,22 @@ $$\Delta\omega = \frac{A \cos\theta'}{d^2} .$$
     },
     credit={"horizon-not-clamped": 0.5},
     hints={
+        "sine-forgotten": {
+            "en": "You divided by sin θ, as the cotangent does: the cosine alone belongs there",
+            "ru": "У вас деление на sin θ, как в котангенсе: нужен только косинус",
+        },
+        "sine-twice": {
+            "en": "You have a sin θ too many: the cosine alone belongs there",
+            "ru": "У вас лишний sin θ: нужен только косинус",
+        },
+        "theta-twice": {
+            "en": "You took θ at the light too: there it is the other angle, θ'",
+            "ru": "Вы взяли θ и у источника, а там другой угол, θ'",
+        },
+        "theta-light-twice": {
+            "en": "You took θ' at the receiver too: there it is the other angle, θ",
+            "ru": "Вы взяли θ' и у приёмника, а там другой угол, θ",
+        },
         "cosine-twice": {
             "en": "The cosine enters once: the area that a beam falls on is 1/cos θ as large",
             "ru": "Косинус входит один раз: пучок ложится на площадь в 1/cos θ раз большую",

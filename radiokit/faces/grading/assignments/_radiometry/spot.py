@@ -119,6 +119,10 @@ $10^{17}$, где разность $1 - \cos^{n+1}\alpha$ теряет цифр�
             "en": "The azimuth gives 2π, not 4π",
             "ru": "Интеграл по азимуту даёт 2π, а не 4π",
         },
+        "pi-too-few": {
+            "en": "You forgot π: the azimuth's integral gives 2π",
+            "ru": "Вы забыли π: интеграл по азимуту равен 2π",
+        },
         "two-pi-too-few": {
             "en": "You forgot the azimuth: its integral gives 2π",
             "ru": "Вы забыли про азимут: интеграл по нему даёт 2π",

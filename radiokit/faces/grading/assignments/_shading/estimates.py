@@ -33,6 +33,8 @@ _FURNACE: dict[str, Any] = {
         "cosine-forgotten": lambda albedo: 2 * albedo,
         "cosine-twice": lambda albedo: 2 * albedo / 3,
         "two-pi-too-few": lambda albedo: albedo / (2 * math.pi),
+        "density-of-sphere": lambda albedo: 2 * albedo,
+        "angle-uniform": lambda albedo: 4 * albedo / math.pi,
     },
 }
 
@@ -62,6 +64,22 @@ FURNACE = Question(
         Part(name="unbiased", weight=2, judge=Estimator(**_FURNACE)),
         Part(name="honest", judge=Estimator(**_FURNACE, aspect="error")),
     ),
+    hints={
+        "density-of-sphere": {
+            "en": "You divided by 1/4π, the density of the whole sphere: that of the hemisphere is 1/2π.",
+            "ru": "Вы разделили на 1/4π, плотность для всей сферы: для полусферы она равна 1/2π.",
+        },
+        "angle-uniform": {
+            "en": "Your θ is uniform in [0, π/2]: for uniform directions it is cos θ that is uniform.",
+            "ru": "У вас равномерно распределён θ на [0, π/2]: у равномерных направлений равномерен cos θ.",
+        },
+        "halved": {
+            "en": "Your value is half of the right one: the density is twice 1/2π, or half of your "
+            "directions lie below the horizon, or the like.",
+            "ru": "Ваше значение вдвое меньше верного: плотность вдвое больше 1/2π, половина направлений под "
+            "горизонтом или подобное.",
+        },
+    },
     seconds=SECONDS,
 )
 

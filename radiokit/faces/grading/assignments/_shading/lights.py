@@ -292,6 +292,21 @@ MIS_WEIGHT = Question(
         ),
     ),
     hints={
+        **{
+            name: {
+                "en": "The distance has a wrong power somewhere: p_ω = p_A d²/cos θ', with the same d² above "
+                "and below.",
+                "ru": "Где-то не та степень расстояния: p_ω = p_A d²/cos θ', и в числителе, и в знаменателе "
+                "одно и то же d².",
+            }
+            for name in (
+                "distance-cubed",
+                "distance-doubled",
+                "distance-forgotten",
+                "distance-not-squared",
+                "distance-squared-twice",
+            )
+        },
         "cosine-multiplied": {
             "en": "p = p_A d²/cos θ': divide by the cosine at the light, do not multiply.",
             "ru": "p = p_A d²/cos θ': на косинус у источника нужно делить, а не умножать.",

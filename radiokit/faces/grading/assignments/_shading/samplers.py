@@ -41,6 +41,7 @@ _SEEDLESS = {
 
 COSINE_SAMPLE = Question(
     signature="cosine_sample(u)",
+    also=("cosine_pdf(directions)",),
     points=2,
     title={"en": "Cosine-weighted directions", "ru": "Направления с плотностью cos θ/π"},
     text={
@@ -65,6 +66,7 @@ COSINE_SAMPLE = Question(
         ),
         Part(
             name="normalisation",
+            function="cosine_pdf",
             judge=Sampler(density=_cosine_density, pdf="cosine_pdf", aspect="density"),
         ),
     ),
@@ -98,6 +100,7 @@ def _lobe_of(shift: float, over: float) -> Callable[..., Any]:
 
 LOBE_SAMPLE = Question(
     signature="lobe_sample(u, exponent)",
+    also=("lobe_pdf(directions, exponent)",),
     points=2.5,
     title={"en": "Phong's lobe", "ru": "Лепесток Фонга"},
     text={
@@ -125,6 +128,7 @@ LOBE_SAMPLE = Question(
         ),
         Part(
             name="normalisation",
+            function="lobe_pdf",
             weight=2,
             judge=Sampler(
                 density=_lobe_of(0, 1),

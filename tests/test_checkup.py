@@ -1,0 +1,91 @@
+"""The checkup of an assignment: the solution earns all and blanks nothing, or it is said what is wrong."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+import radiokit as rk
+from radiokit.faces.cli import main
+from radiokit.facts.errors import ParameterError
+
+HERE = Path(__file__).parent
+HOMEWORK, SOLUTION = HERE / "homework.py", HERE / "homework_solution.py"
+
+
+def test_an_assignment_that_is_right(capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["assignment", str(HOMEWORK), "--check", "--solution", str(SOLUTION), "--students", "2"])
+    told = capsys.readouterr()
+    assert (ended.value.code, told.err) == (0, "")
+    assert told.out.startswith("homework: 2 questions, tried for 2 students\n")
+    assert told.out.endswith("✓ blanks earn nothing; the solution earns full marks\n")
+
+
+def test_a_solution_that_is_wrong_or_an_assignment_that_is(tmp_path, capsys):
+    wrong = tmp_path / "wrong.py"
+    wrong.write_text(
+        SOLUTION.read_text().replace("def cone(half_angle):", "def cone(half_angle):\n    return 2.0")
+    )
+    with pytest.raises(SystemExit) as ended:
+        main(["assignment", str(HOMEWORK), "--check", "--solution", str(wrong), "--students", "2", "--json"])
+    found = json.loads(capsys.readouterr().out)
+    assert (ended.value.code, found["ok"], found["solved"]) == (1, False, True)
+    ordinary, hard = found["mistakes"]
+    assert ordinary.startswith("question cone, part ordinary: the solution falls short for 2 of 2 students: ")
+    assert hard.startswith("question cone, part hard: ")
+    assert set(found["seconds"]) == {"irradiance", "cone"}
+
+
+def test_blanks_that_earn_points_and_faults_that_only_some_inputs_show(tmp_path):
+    text = HOMEWORK.read_text()
+    lenient = tmp_path / "lenient.py"
+    kind = "class Kind:\n    def judge(self, *_, **__): return rk.grading.Finding(share=0.5, text='ok')"
+    text = text.replace("def lamps(", f"{kind}\n\ndef lamps(", 1)
+    text = text.replace("judge=rk.grading.Values(inputs=lamps, reference=irradiance)", "judge=Kind()", 1)
+    text = text.replace("return 4 * np.pi *", "assert half_angle[0] > 2e-5\n    return 4 * np.pi *", 1)
+    lenient.write_text(text)
+    found = rk.grading.check_assignment(lenient, students=5)
+    assert not found.ok
+    assert found.notes == ("no solution was tried",)
+    fault, blank = found.mistakes
+    assert fault.startswith("question cone, part hard: reference raised AssertionError")
+    assert blank == "question irradiance, part ordinary: a blank earns 1 of 2 points"
+
+
+def test_students_are_at_least_one():
+    with pytest.raises(ParameterError, match="students = 0"):
+        rk.grading.check_assignment("radiometry", students=0)
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--check", "--to", "copies"), "check = True is not allowed: it must be alone"),
+        (("--solution", "mine.py"), "solution = 'mine.py' is not allowed: it must be beside --check"),
+        (("--secret-file", "mine.txt"), "secret-file = 'mine.txt' is not allowed"),
+    ],
+)
+def test_options_that_do_nothing_are_refused(options, said, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["assignment", str(HOMEWORK), *options])
+    assert ended.value.code == 2
+    assert said in capsys.readouterr().err
+
+
+def test_a_file_is_suggested_where_its_suffix_is_forgotten(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "homework.py").write_text(HOMEWORK.read_text())
+    with pytest.raises(SystemExit) as ended:
+        main(["assignment", "homework"])
+    assert ended.value.code == 2
+    assert "did you mean 'homework.py'?" in capsys.readouterr().err
+
+
+def test_a_check_needs_a_name(capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["assignment", "--check"])
+    assert ended.value.code == 2
+    assert "radiometry, shading, or FILE.py" in capsys.readouterr().err
