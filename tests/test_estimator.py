@@ -242,6 +242,18 @@ def test_where_nothing_exact_can_be_sampled_the_exact_value_is_no_estimate(
         assert (found.diagnosis, found.share) == (diagnosis, float(not diagnosis))
 
 
+@pytest.mark.parametrize("answer", [(1.0, 0.0), (-1.0, 5e-324), (1e155, 0.0), (1.0, 1e-3)])
+def test_no_constant_is_honest(answer: Any, rng: np.random.Generator, local_callee: Any) -> None:
+    """Some misconception always leads to it, and it has no spread: it would earn the part for nothing."""
+    value, error = answer
+    callee = local_callee(
+        lambda albedo, samples, seed: (value + error * np.random.default_rng(seed).normal(), error)
+    )
+    found = _judge("error").judge(callee, rng, language="en", hints={}, shown=True)
+    assert found.share == 0
+    assert "no standard error is honest" in found.text
+
+
 def test_efficiency_is_a_matter_of_variance(rng: np.random.Generator, local_callee: Any) -> None:
     better = estimator(lambda rng, count: 0.8 + 0.4 * rng.random(count))
     cases = {

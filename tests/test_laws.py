@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from radiokit.bsdfs import GGX, BlinnPhong, Lambert, Phong, PhongOriginal
+from radiokit.checks.probes import pairs
 from radiokit.contracts.blackbox import as_bsdf
 from radiokit.faces.grading import Laws, Limits, Sandbox
 from radiokit.faces.grading import laws as module
@@ -19,6 +20,7 @@ from radiokit.faces.grading.grader import Isolated
 from radiokit.faces.grading.here import Here
 from radiokit.faces.grading.lawtexts import share_of_light
 from radiokit.faces.grading.lawwords import LAW_NAMES, LAW_SENTENCES
+from radiokit.faces.grading.likeness import PAIRS, compared
 from radiokit.faces.grading.signature import listed, renamed
 from radiokit.facts.errors import ParameterError
 
@@ -249,6 +251,20 @@ def test_the_misconception_is_named_beside_the_law(coarse):
     assert re.search(r"wrong at \d+ of 256, as at wi: .* wo: θ = 89\.9", few.text)
 
 
+def test_the_directions_of_the_comparison_are_not_foretold():
+    known = {wi.tobytes() + wo.tobytes() for wi, wo in zip(*pairs(PAIRS, exact_blinn()), strict=True)}
+
+    def sly(wi, wo):
+        """Right where everyone was once looked at, and less elsewhere."""
+        right = [i.tobytes() + o.tobytes() in known for i, o in zip(wi, wo, strict=True)]
+        return np.where(right, 1.0, 0.77) * blinn(wi, wo)
+
+    rng = np.random.default_rng(0)
+    models = [[as_bsdf(sly)], [exact_blinn()], [{}]]
+    found = compared(*models, rng, variants={}, hints={}, language="en")
+    assert found.name == "other-factor"
+
+
 def test_variants_of_the_assignment_are_named(coarse):
     def halves(wi, wo, exponent):
         return blinn(wi, wo, exponent / 2)
@@ -340,7 +356,9 @@ def test_loops_are_searched_more_coarsely_and_judged_alike(tmp_path, monkeypatch
     judge = Laws(parameters=({"exponent": 9.0},), reference=lambda exponent: Phong(exponent=exponent))
 
     def finding(name):
-        return judge.judge(Isolated(sandbox, name), None, language="en", hints={}, shown=True)
+        return judge.judge(
+            Isolated(sandbox, name), np.random.default_rng(0), language="en", hints={}, shown=True
+        )
 
     with Sandbox(tmp_path / "theirs.py", limits=Limits(seconds=5.0)) as sandbox:
         loop, array = finding("loop"), finding("array")
@@ -442,3 +460,37 @@ def test_an_excess_is_never_rounded_away():
 def test_arguments_out_of_range_are_named(wrong):
     with pytest.raises(ParameterError, match=f"^{list(wrong)[-1]} = "):
         Laws(**wrong)
+
+
+ODD = """
+import numpy as np
+turns = 0
+def flat(wi, wo): return np.full(len(wi), 0.3)
+def below(wi, wo): return flat(wi, wo)
+def wide(wi, wo): return flat(wi, wo)
+below.transmissive = wide.transmissive = True
+below.eta, wide.eta = -1.5, 1e290
+def huge(wi, wo): return np.full(len(wi), 1e308)
+def turning(wi, wo):
+    global turns
+    turns += 1
+    return flat(wi, wo) if turns % 2 else np.full((len(wi), 3), 0.3)
+"""
+
+
+def test_what_is_odd_costs_points_and_needs_no_person(tmp_path, coarse):
+    """A judge that raises is looked at by a teacher: no function may make it."""
+    (tmp_path / "theirs.py").write_text(ODD, encoding="utf-8")
+    texts = {
+        "below": "has eta = -1.5, which is no refractive index",
+        "wide": "has eta = 1e+290, which is no refractive index",
+        "huge": "Is too near the limit to tell: it reflects inf %",
+        "turning": "returned shape",
+    }
+    with Sandbox(tmp_path / "theirs.py", limits=Limits(seconds=5.0)) as sandbox:
+        for name, text in texts.items():
+            found = Laws().judge(
+                Isolated(sandbox, name), np.random.default_rng(0), language="en", hints={}, shown=True
+            )
+            assert found.share < 1
+            assert text in found.text

@@ -197,6 +197,8 @@ def test_efficiency_counts_variance_and_lets_time_be(rng: np.random.Generator, l
         (uniform, flat, 0.0, ("inefficient", 0.0)),
         (polar, flat, 0.0, ("", 0.0)),
         (polar, lambda w: 0.9 * _cosine(w), 0.0, ("", 0.0)),
+        (uniform, lambda w: _cosine(w) * (1 + 0.5 * w[:, 0]), 0.0, ("", 0.0)),  # f over its integral
+        (polar, lambda w: _cosine(w) * (1 + 0.5 * w[:, 0]), 0.0, ("", 0.0)),
         (polar, lambda w: 0.0 * w[:, 2], 0.0, ("", 0.0)),
         (polar, lambda w: -_cosine(w), 0.0, ("", 0.0)),
     ):

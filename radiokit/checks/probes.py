@@ -29,7 +29,9 @@ def polar(cosine: npt.ArrayLike, phi: npt.ArrayLike) -> FloatArray:
     return np.stack([sine * np.cos(phi), sine * np.sin(phi), cosine], axis=-1)
 
 
-def pairs(count: int, f: BSDF | None = None) -> tuple[FloatArray, FloatArray]:
+def pairs(
+    count: int, f: BSDF | None = None, *, shift: FloatArray | float = 0.0
+) -> tuple[FloatArray, FloatArray]:
     """Return ``count`` pairs of directions on the upper hemisphere, hard ones included.
 
     Half are uniform in solid angle, so that an odd region of any shape is hit by its share; a quarter
@@ -39,8 +41,10 @@ def pairs(count: int, f: BSDF | None = None) -> tuple[FloatArray, FloatArray]:
     For an ``f`` that transmits, all four combinations of sides get an equal share of each kind. Across the
     surface, pairs lie near the refracted pair instead of the mirror pair, and half of the grazing ones have
     one direction within 10⁻⁵ to 1 of the critical angle.
+
+    A ``shift`` of the numbers that they are made of, (4,) in [0, 1), gives others, just as well spread.
     """
-    u = kronecker(count, 4)
+    u = (kronecker(count, 4) + shift) % 1.0
     cos_i, cos_o = u[:, 0].copy(), u[:, 1].copy()
     phi_i, phi_o = 2 * np.pi * u[:, 2], 2 * np.pi * u[:, 3]
     kind = np.arange(count) % 4

@@ -127,6 +127,8 @@ def converge(
             error = np.maximum(error, _doubtful(values, found))
     if not converged and len(values) > 2:
         converged = bool(np.all(error <= np.maximum(atol, rtol * np.abs(values[-1]))))
+    if np.isnan(error).any():  # sums that overflow
+        error = np.where(np.isnan(error), np.inf, error)
     seconds = time.perf_counter() - start
     return Estimate(values[-1], error, "truncation", evaluations, seconds, "", converged)
 

@@ -13,7 +13,7 @@ from radiokit.faces.grading.protocol import Array
 from radiokit.measure.quadrature import hemisphere
 from radiokit.measure.slope import find_lobe, slope_map
 
-__all__ = ["ABOVE", "ASKED", "UNIFORM", "integral", "probes", "uniform_variance"]
+__all__ = ["ABOVE", "ASKED", "UNIFORM", "integral", "moments", "probes", "uniform_variance"]
 
 ABOVE = np.array([0.0, 0.0, 1.0])
 UNIFORM = 0.5 / math.pi
@@ -34,6 +34,12 @@ def uniform_variance(integrand: Callable[[Array], Array]) -> tuple[float, float]
     mean = float(hemisphere(integrand, **options).value)
     square = float(hemisphere(lambda w: integrand(w) ** 2, **options).value)
     return mean, square / UNIFORM - mean**2
+
+
+def moments(directions: Array) -> Array:
+    """Return the numbers in [0, 1] by which an integrand is weighed to see where samples are, (2, N)."""
+    found: Array = np.stack([np.clip(directions[:, 2], 0.0, 1.0), 0.5 * (1 + directions[:, 0])])
+    return found
 
 
 def probes(cells: Cells, rng: np.random.Generator) -> Array:

@@ -46,11 +46,15 @@ class Estimator:
     - ``"value"``: the same seed gives the same answer and another seed another; the mean is right (Student's
       t for each input, and all together); four times as many samples halve the spread (variance ratios);
     - ``"error"``: the standard errors are the spread between seeds, neither less nor more (variance ratios);
-      where the value is wrong, it must be so by a misconception that is known;
+      where the value is wrong, it must be so by a misconception that is known, and no constant;
     - ``"efficiency"``: the value is right, and the variance of one sample is at most ``budget``.
 
     Estimators without variance are right, unless ``exact`` is False. A right estimator whose runs are nearly
     normal is rejected at most once in 1.6e7 gradings; see ``LEVEL`` and ``ROUNDS``.
+
+    What cannot be told from answers: whether the exact value was computed and given noise and an error that
+    suit each other, and whether more than N samples were drawn, as time is bounded only by ``slowest``. Where
+    that matters, read the code, or ask for a `Sampler`, whose random numbers are the judge's.
 
     Parameters
     ----------
@@ -169,7 +173,8 @@ class Estimator:
             failing = failed if turn == 0 else failing & failed
             if not failing and not frozen:
                 return self._right(runs, language, measured)
-        return self._wrong(runs, failing, language=language, hints=hints, shown=shown, measured=measured)
+        with np.errstate(all="ignore"):
+            return self._wrong(runs, failing, language=language, hints=hints, shown=shown, measured=measured)
 
     def _tests(self, runs: Runs) -> Iterator[tuple[str, float]]:
         """Yield the tests of this aspect, and their p-values."""
@@ -245,7 +250,7 @@ class Estimator:
         if frozen and not about:
             return found(slip(language, "seed-reused", hints), name="seed-reused")
         if self.aspect == "error":
-            if why and not about:
+            if why and (runs.constant or not about):  # some misconception leads to any constant
                 return found(tell(language, "wrong-value"), *why)
             if not any(name.startswith("honest") for name in failing):
                 return self._right(runs, language, dict(measured))

@@ -45,6 +45,9 @@ class Laws:
     least ten times as often. If that does not tell either, the law counts as kept where what was measured is
     within the limit: nobody loses points by a fault that was not seen.
 
+    The directions at which the laws are judged are the same for everyone and can be foretold: a function that
+    keeps a law there alone is taken to keep it. Those at which it is compared with a reference are drawn.
+
     Parameters
     ----------
     laws : sequence of str
@@ -159,7 +162,9 @@ class Laws:
                     right.setdefault(verdict.check, text)
                 refused = refused or self._too_dark(report, language)
             if self.reference is not None and not refused:
-                like = compared(models, meant, chosen, variants=self.variants, hints=hints, language=language)
+                like = compared(
+                    models, meant, chosen, rng, variants=self.variants, hints=hints, language=language
+                )
                 refused = tell(language, "stranger") if like.stranger else ""
         except CallableError as error:
             return Finding(share=0.0, text=failed(error, language))

@@ -41,6 +41,7 @@ def compared(
     models: Sequence[BSDF],
     meant: Sequence[BSDF],
     given: Sequence[Mapping[str, Any]],
+    rng: np.random.Generator,
     *,
     variants: Mapping[str, Callable[..., Any]],
     hints: Mapping[str, Mapping[str, str]],
@@ -49,12 +50,13 @@ def compared(
     """Compare a function with what it should be, over all its parameters together.
 
     ``models``, ``meant`` and ``given`` are the function, what it should be, and its keyword arguments, one
-    for each choice of parameters; ``variants`` and ``hints`` as for `Laws`. Values that are not finite say
-    nothing here. A constant is a stranger unless one is asked for, and so is black.
+    for each choice of parameters; ``variants`` and ``hints`` as for `Laws`. The pairs are drawn, so that none
+    can be recognised. Values that are not finite say nothing here. A constant is a stranger unless one is
+    asked for, and so is black.
     """
     count = -(-PAIRS // len(models))
     rows = [slice(k * count, (k + 1) * count) for k in range(len(models))]
-    wi, wo = (np.concatenate([w] * len(models)) for w in pairs(count, meant[0]))
+    wi, wo = (np.concatenate([w] * len(models)) for w in pairs(count, meant[0], shift=rng.random(4)))
 
     def over(functions: Sequence[Callable[..., Any]], wi: Array, wo: Array) -> Array:
         return np.concatenate(

@@ -25,6 +25,9 @@ __all__ = ["is_pairwise", "open_isolated", "remote_bsdf"]
 BLOCK = 4096
 """How many pairs are sent at a time to a function that takes one, so that each call ends in time."""
 
+LEAST = 1e-100
+"""The least refractive index, and the reciprocal of the largest."""
+
 
 class _Remote:
     """A function in a sandbox, that is called as if it were here."""
@@ -34,6 +37,7 @@ class _Remote:
     ) -> None:
         self._sandbox, self._name, self._parameters, self.mode = sandbox, name, parameters, mode
         self.__name__ = name
+        self._shape: tuple[int, ...] | None = None
 
     def looped(self, mode: Mode) -> _Remote:
         """Return the function with its loop over pairs on the other side, so that blocks are sent."""
@@ -54,7 +58,16 @@ class _Remote:
             raise kind(result.error.removeprefix(f"raised {result.raised}").removeprefix(": "))
         if not result.ok:
             raise CallableError(self._name, result.error)
-        return result.values[0] if len(result.values) == 1 else result.values
+        answer = result.values[0]
+        if len(result.values) > 1:
+            return result.values
+        if len(first) > 1 and answer.shape[:1] == (len(first),):
+            self._shape = answer.shape[1:] if self._shape is None else self._shape
+            if answer.shape[1:] != self._shape:
+                raise CallableError(
+                    self._name, f"returned shape {answer.shape} after {(len(first), *self._shape)}"
+                )
+        return answer
 
 
 def remote_bsdf(
@@ -105,13 +118,16 @@ def remote_bsdf(
         if facts[name] and not given  # they would not know the parameters
     }
     transmissive = bool(given.get("transmissive", facts["transmissive"]))
+    eta = facts["eta"]
+    if transmissive and "eta" not in given and eta is not None and not LEAST <= eta <= 1 / LEAST:
+        raise CallableError(function, f"has eta = {eta:g}, which is no refractive index")
     passed = renamed(facts["parameters"], given) if by_position else given
     remote = _Remote(sandbox, function, passed)
     model = as_bsdf(
         remote,
         label=function,
         transmissive=transmissive,
-        eta=given.get("eta", facts["eta"]) if transmissive else None,
+        eta=given.get("eta", eta) if transmissive else None,
         **extra,
     )
     if not isinstance(model, BlackBox) or model.mode == "batch":

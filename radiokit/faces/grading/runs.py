@@ -108,6 +108,14 @@ class Runs:
         """Whether the seed changes nothing."""
         return bool((np.ptp(self.values, axis=1) <= SAME * np.abs(self.values).max(axis=1)).all())
 
+    @property
+    def constant(self) -> bool:
+        """Whether the inputs change nothing but noise, though what is right differs by far more."""
+        noise = 4 * np.sqrt(self.variances / self.values.shape[1]).max()
+        changes = np.ptp(self.means.reshape(-1, 2), axis=0).max()  # for each number of samples
+        rounding = SAME * np.abs(self.means).max()
+        return bool(changes <= noise + rounding and noise < np.ptp(self.right) / 4)
+
     def brief(self, group: int) -> str:
         """Return the inputs of a group in words."""
         numbers = {name: value for name, value in self.inputs[group].items() if np.ndim(value) == 0}

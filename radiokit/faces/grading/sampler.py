@@ -10,7 +10,15 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from radiokit.faces.grading.directions import ASKED, UNIFORM, integral, probes, uniform_variance
+from radiokit.faces.grading.directions import (
+    ABOVE,
+    ASKED,
+    UNIFORM,
+    integral,
+    moments,
+    probes,
+    uniform_variance,
+)
 from radiokit.faces.grading.draws import Draws, Fit, cells_of_density, sampled, u_slip
 from radiokit.faces.grading.exact import no_inputs
 from radiokit.faces.grading.finding import Callee, Finding
@@ -21,6 +29,7 @@ from radiokit.faces.grading.runtests import ROUNDS, each_level
 from radiokit.faces.grading.samplewords import line, slip, tell
 from radiokit.faces.grading.suspects import behind_density
 from radiokit.facts.errors import AssignmentError, ParameterError
+from radiokit.measure.slope import find_lobe
 from radiokit.measure.statistics import bernstein_test
 
 __all__ = ["Sampler", "SamplerAspect", "called"]
@@ -41,8 +50,9 @@ class Sampler:
     - ``"distribution"``: unit vectors above the horizon, each from its own row of u, continuous in both of
       its numbers, that follow the density (chi-square);
     - ``"density"``: the claimed density is the one asked for, above and below the horizon;
-    - ``"efficiency"``: the mean of f/p is the integral of f over the hemisphere, and its variance is at most
-      1/``factor`` of what uniform directions have; time counts only where it is out of all proportion.
+    - ``"efficiency"``: the mean of f/p is the integral of f over the hemisphere, those of z f/p and
+      (1 + x) f/p likewise, and the variance of f/p is at most 1/``factor`` of what uniform directions have;
+      time counts only where it is out of all proportion.
 
     A right sampler is rejected at most once in 1.6e7 gradings: a test counts when it fails three times, each
     time with other random numbers.
@@ -235,8 +245,10 @@ class Sampler:
         language = draws.language
         integrand = partial(called, self.integrand, given=draws.inputs, what="integrand")
         exact, uniform = uniform_variance(integrand)
-        level = each_level(2 * self.cases)
-        failing = {"weights", "variance"}
+        level = each_level(4 * self.cases)
+        width = find_lobe(integrand, ABOVE, around=(False,)).width
+        weighed = [integral(partial(_weighed, integrand, k), width) for k in range(2)]
+        failing = {"weights", "variance", "moments"}
         for _ in range(ROUNDS):
             directions = draws.sample(rng.random((self.samples, 2)))
             claimed = draws.density(directions)
@@ -251,6 +263,13 @@ class Sampler:
             passed = set()
             if bernstein_test(weights, exact, 1e-6 * exact) >= level:
                 passed.add("weights")
+            # a density that is made for the integrand alone has no variance, whatever is sampled
+            tails = [
+                bernstein_test(weights * each, right, 1e-4 * exact)
+                for each, right in zip(moments(directions), weighed, strict=True)
+            ]
+            if min(tails) >= level:
+                passed.add("moments")
             if variance - 3 * error <= uniform / self.factor:
                 passed.add("variance")
             failing -= passed
@@ -262,6 +281,8 @@ class Sampler:
         if "weights" in failing:
             told = {"value": f"{mean:.4g}", "right": f"{exact:.4g}"}
             return Finding(share=0.0, text=line(tell(language, "weights", **told)), measured=measured)
+        if "moments" in failing:
+            return Finding(share=0.0, text=line(tell(language, "forged")), measured=measured)
         ratio = {"ratio": f"{variance / uniform:.1g}"}
         if "variance" in failing:
             text = tell(language, "inefficient", most=f"{1 / self.factor:.2g}", **ratio)
@@ -296,6 +317,11 @@ def called(
         raise AssignmentError(
             f"{what} gives {told}{bad} for {len(directions)} directions: it must give finite numbers"
         )
+    return found
+
+
+def _weighed(integrand: Callable[..., Array], k: int, directions: Array) -> Array:
+    found: Array = moments(directions)[k] * integrand(directions)
     return found
 
 

@@ -135,6 +135,10 @@ SENTENCES: Mapping[str, Words] = {
         "en": "the mean of f/p over the samples is {value}, right is {right}: samples and density disagree",
         "ru": "среднее f/p по выборке равно {value}, верно {right}: выборка и плотность не согласованы",
     },
+    "forged": {
+        "en": "the mean of f/p is right, but not where f is weighed by z or x: samples and density disagree",
+        "ru": "среднее f/p верно, но не с весом z или x: выборка и плотность не согласованы",
+    },
 }
 """What the two judges say."""
 

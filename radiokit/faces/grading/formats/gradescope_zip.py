@@ -39,7 +39,7 @@ rm -rf "$base/uv" "$base/cache"
 chmod -R a+rX "$base/venv"
 if [ -d "$base/python" ]; then chmod -R a+rX "$base/python"; fi
 "$base/venv/bin/python" -m compileall -q "$here/package"
-PYTHONPATH=$here/package "$base/venv/bin/python" -m radiokit.faces.grading.autograder --check
+PYTHONPATH=$here/package "$base/venv/bin/python" -P -m radiokit.faces.grading.autograder --check
 """
 
 _RUN = """\
@@ -52,7 +52,7 @@ chmod -R go= "$base/source" "$base/results"
 if [ -e "$base/submission_metadata.json" ]; then chmod go= "$base/submission_metadata.json"; fi
 cd "$base"
 export PYTHONPATH=$base/source/package
-exec "${{AUTOGRADER_PYTHON:-$base/venv/bin/python}}" -B -m radiokit.faces.grading.autograder \\
+exec "${{AUTOGRADER_PYTHON:-$base/venv/bin/python}}" -P -B -m radiokit.faces.grading.autograder \\
     "$base" {language}
 """
 

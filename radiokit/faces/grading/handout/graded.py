@@ -5,7 +5,7 @@ It takes the submission from its file and grades it in radiokit's sandbox, far f
 cell asks for is read from nbgrader's records of the release, never from what was handed in: an assignment's
 file is run here.
 The kernel still runs a submission's other cells as the user who grades, as nbgrader always does: what
-that user may write, a submission may, too.
+that user may read or write, the secret and the gradebook among it, a submission may, too.
 """
 
 from __future__ import annotations
