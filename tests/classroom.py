@@ -18,9 +18,9 @@ import signal
 import numpy as np
 
 from radiokit.faces.grading.assignment import Assignment
-from radiokit.faces.grading.limits import Limits
+from radiokit.faces.grading.isolation.limits import Limits
 from radiokit.faces.grading.question import Part, Question
-from radiokit.faces.grading.values import Values
+from radiokit.faces.grading.judges.values import Values
 
 
 def both(text):

@@ -13,7 +13,7 @@ import pytest
 from radiokit.contracts.blackbox import as_bsdf
 from radiokit.contracts.bsdf import BSDF
 from radiokit.faces.grading.finding import Callee, Mode
-from radiokit.faces.grading.result import Result
+from radiokit.faces.grading.isolation.result import Result
 from radiokit.faces.plots.offscreen import offscreen
 from radiokit.facts.errors import RadiokitError
 

@@ -14,9 +14,10 @@ from radiokit.contracts.blackbox import as_bsdf
 from radiokit.contracts.bsdf import bsdf
 from radiokit.faces.diagnosis.catalogue import CATALOGUE
 from radiokit.faces.diagnosis.misconception import LANGUAGES
-from radiokit.faces.grading import Laws, Sandbox, Values, grade, laws, load_assignment, student_rng
+from radiokit.faces.grading import Laws, Sandbox, Values, grade, load_assignment, student_rng
 from radiokit.faces.grading.grader import Isolated
-from radiokit.faces.grading.result import Result
+from radiokit.faces.grading.isolation.result import Result
+from radiokit.faces.grading.judges import laws
 from radiokit.facts.directions import reflect
 
 ASSIGNMENT = load_assignment("brdfs")

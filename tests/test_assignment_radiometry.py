@@ -20,14 +20,14 @@ from radiokit.contracts.bsdf import BSDF
 from radiokit.faces.diagnosis.catalogue import CATALOGUE
 from radiokit.faces.diagnosis.misconception import LANGUAGES
 from radiokit.faces.grading.assignment import list_assignments, load_assignment, student_rng
-from radiokit.faces.grading.evidence import LONGEST
 from radiokit.faces.grading.finding import Mode
 from radiokit.faces.grading.grader import grade
 from radiokit.faces.grading.grades import Grade
-from radiokit.faces.grading.protocol import Array
+from radiokit.faces.grading.isolation.protocol import Array
+from radiokit.faces.grading.isolation.result import Result
+from radiokit.faces.grading.judges.evidence import LONGEST
+from radiokit.faces.grading.judges.values import Values
 from radiokit.faces.grading.question import Question
-from radiokit.faces.grading.result import Result
-from radiokit.faces.grading.values import Values
 from radiokit.facts.quantities import Q
 
 ASSIGNMENT = load_assignment("radiometry")

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 import radiokit as rk
-from radiokit.faces.grading.estimator import Aspect, Estimator
-from radiokit.faces.grading.runs import gather
-from radiokit.faces.grading.runtests import LEVEL, ROUNDS, each_level
-from radiokit.faces.grading.samplewords import SENTENCES, SLIPS
+from radiokit.faces.grading.judges.estimator import Aspect, Estimator
+from radiokit.faces.grading.judges.runs import gather
+from radiokit.faces.grading.judges.runtests import LEVEL, ROUNDS, each_level
+from radiokit.faces.grading.judges.samplewords import SENTENCES, SLIPS
 from radiokit.faces.grading.words import words
 from radiokit.facts.errors import ParameterError
 

@@ -12,8 +12,8 @@ import pytest
 
 import radiokit as rk
 from radiokit.faces.grading import Finding, load_assignment, student_rng
-from radiokit.faces.grading.evidence import guesses
-from radiokit.faces.grading.here import Here
+from radiokit.faces.grading.handout.here import Here
+from radiokit.faces.grading.judges.evidence import guesses
 
 
 def found(work: str, part: str, code: str, language: str = "en") -> Finding:

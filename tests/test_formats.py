@@ -24,8 +24,8 @@ from radiokit.faces.grading.formats.phrases import PHRASES, protection
 from radiokit.faces.grading.formats.text import to_rich
 from radiokit.faces.grading.formats.writing import FORMATS, output, write_file
 from radiokit.faces.grading.grades import Grade, PartGrade, QuestionGrade
-from radiokit.faces.grading.limits import PROTECTIONS
-from radiokit.faces.grading.protocol import plain_text
+from radiokit.faces.grading.isolation.limits import PROTECTIONS
+from radiokit.faces.grading.isolation.protocol import plain_text
 from radiokit.faces.grading.record import grade_schema, record
 from radiokit.faces.grading.unfinished import nothing_yet, with_pending
 from radiokit.facts.errors import ParameterError

@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 
 import radiokit as rk
-from radiokit.faces.grading.sandbox import Sandbox
+from radiokit.faces.grading.isolation.sandbox import Sandbox
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="these attacks are written for Linux")
 

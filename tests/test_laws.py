@@ -15,13 +15,13 @@ from radiokit.bsdfs import GGX, BlinnPhong, Lambert, Phong, PhongOriginal
 from radiokit.checks.probes import pairs
 from radiokit.contracts.blackbox import as_bsdf
 from radiokit.faces.grading import Laws, Limits, Sandbox
-from radiokit.faces.grading import laws as module
 from radiokit.faces.grading.grader import Isolated
-from radiokit.faces.grading.here import Here
-from radiokit.faces.grading.lawtexts import share_of_light
-from radiokit.faces.grading.lawwords import LAW_NAMES, LAW_SENTENCES
-from radiokit.faces.grading.likeness import PAIRS, compared
-from radiokit.faces.grading.signature import listed, renamed
+from radiokit.faces.grading.handout.here import Here
+from radiokit.faces.grading.isolation.signature import listed, renamed
+from radiokit.faces.grading.judges import laws as module
+from radiokit.faces.grading.judges.lawtexts import share_of_light
+from radiokit.faces.grading.judges.lawwords import LAW_NAMES, LAW_SENTENCES
+from radiokit.faces.grading.judges.likeness import PAIRS, compared
 from radiokit.facts.errors import ParameterError
 
 

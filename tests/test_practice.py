@@ -13,8 +13,8 @@ import pytest
 
 import radiokit as rk
 from radiokit.faces.grading.assignment import load_assignment, student_rng
-from radiokit.faces.grading.here import Here
-from radiokit.faces.grading.practice import SECRET
+from radiokit.faces.grading.handout.here import Here
+from radiokit.faces.grading.handout.practice import SECRET
 
 HOMEWORK_FILE = Path(__file__).with_name("homework.py")
 HOMEWORK = load_assignment(HOMEWORK_FILE)

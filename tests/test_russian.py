@@ -13,7 +13,7 @@ import pytest
 import radiokit as rk
 from radiokit.faces.diagnosis.catalogue import CATALOGUE
 from radiokit.faces.diagnosis.reading import read
-from radiokit.faces.grading.lawtexts import failed
+from radiokit.faces.grading.judges.lawtexts import failed
 from radiokit.faces.grading.russian import OUTCOMES, told, translated
 from radiokit.facts.errors import CallableError, TargetError
 

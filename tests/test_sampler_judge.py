@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from radiokit.faces.grading.draws import Draws, Fit, cells_of_density, sampled
-from radiokit.faces.grading.runtests import LEVEL, ROUNDS, each_level
-from radiokit.faces.grading.sampler import Sampler
+from radiokit.faces.grading.judges.draws import Draws, Fit, cells_of_density, sampled
+from radiokit.faces.grading.judges.runtests import LEVEL, ROUNDS, each_level
+from radiokit.faces.grading.judges.sampler import Sampler
 from radiokit.facts.errors import ParameterError
 from radiokit.measure.statistics import binomial_interval
 

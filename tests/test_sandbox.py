@@ -17,10 +17,10 @@ import pytest
 
 import radiokit as rk
 from radiokit.faces.cli import main
-from radiokit.faces.grading.limits import PROTECTIONS, Limits
-from radiokit.faces.grading.protocol import PREFIX, Assembler, MalformedError, pack, plain_text
-from radiokit.faces.grading.remote import remote_bsdf
-from radiokit.faces.grading.sandbox import Sandbox
+from radiokit.faces.grading.isolation.limits import PROTECTIONS, Limits
+from radiokit.faces.grading.isolation.protocol import PREFIX, Assembler, MalformedError, pack, plain_text
+from radiokit.faces.grading.isolation.remote import remote_bsdf
+from radiokit.faces.grading.isolation.sandbox import Sandbox
 from radiokit.facts.errors import CallableError, ParameterError, RadiokitError, TargetError
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="these attacks are written for Linux")
@@ -276,7 +276,7 @@ def test_harm_is_explained_in_a_line_and_the_next_call_is_answered(hostile, func
 
 
 def test_walls_are_there_where_they_can_be(hostile):
-    code = "from radiokit.faces.grading.namespaces import unshare; unshare()"
+    code = "from radiokit.faces.grading.isolation.namespaces import unshare; unshare()"
     granted = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False).returncode == 0
     protections = hostile.call("double", X).protections
     assert {"processes", "network", "root", "privileges"} <= set(protections) or not granted
@@ -356,7 +356,7 @@ def test_nothing_outlives_a_killed_parent(tmp_path, name):
     (tmp_path / "hostile.py").write_text(HOSTILE, encoding="utf-8")
     code = (
         "import sys, numpy as np\n"
-        "from radiokit.faces.grading.sandbox import Sandbox\n"
+        "from radiokit.faces.grading.isolation.sandbox import Sandbox\n"
         "with Sandbox(sys.argv[1]) as sandbox:\n"
         "    sandbox.call('named_endless', np.ones(3), parameters={'name': sys.argv[2]})\n"
     )

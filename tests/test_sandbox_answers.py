@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 import sympy
 
-from radiokit.faces.grading.answers import RefusedError, Taker
-from radiokit.faces.grading.limits import Limits
-from radiokit.faces.grading.result import steady
-from radiokit.faces.grading.sandbox import Sandbox
+from radiokit.faces.grading.isolation.answers import RefusedError, Taker
+from radiokit.faces.grading.isolation.limits import Limits
+from radiokit.faces.grading.isolation.result import steady
+from radiokit.faces.grading.isolation.sandbox import Sandbox
 from radiokit.facts.errors import ParameterError
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the sandbox needs a POSIX system")

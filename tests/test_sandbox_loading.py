@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from radiokit.faces.grading.limits import Limits
-from radiokit.faces.grading.sandbox import Sandbox
-from radiokit.faces.grading.sources import starts, without_magics
+from radiokit.faces.grading.isolation.limits import Limits
+from radiokit.faces.grading.isolation.sandbox import Sandbox
+from radiokit.faces.grading.isolation.sources import starts, without_magics
 from radiokit.facts.errors import RadiokitError
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the sandbox needs a POSIX system")

@@ -16,9 +16,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from radiokit.faces.grading import descendants, landlock, seccomp
-from radiokit.faces.grading.limits import Limits
-from radiokit.faces.grading.sandbox import Sandbox
+from radiokit.faces.grading.isolation import descendants, landlock, seccomp
+from radiokit.faces.grading.isolation.limits import Limits
+from radiokit.faces.grading.isolation.sandbox import Sandbox
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="these walls are Linux's")
 
@@ -299,7 +299,7 @@ def test_folders_of_any_depth_are_removed(path, namespaces):
 def test_a_killed_parent_leaves_no_folder(path, tmp_path, namespaces):
     code = (
         "import sys, numpy as np\n"
-        "from radiokit.faces.grading.sandbox import Sandbox\n"
+        "from radiokit.faces.grading.isolation.sandbox import Sandbox\n"
         "with Sandbox(sys.argv[1], namespaces=bool(int(sys.argv[2]))) as sandbox:\n"
         "    sandbox.load()\n"
         "    print(flush=True)\n"
@@ -347,7 +347,7 @@ def test_files_need_no_namespaces(path, tmp_path):
 
 def landlocked():
     """Whether Landlock is on, seen in a process of its own."""
-    code = "from radiokit.faces.grading.landlock import restrict\nprint(restrict(['/usr'], [], []))"
+    code = "from radiokit.faces.grading.isolation.landlock import restrict\nprint(restrict(['/usr'], [], []))"
     done = subprocess.run(
         [sys.executable, "-c", f"import ctypes; ctypes.CDLL(None).prctl(38, 1, 0, 0, 0)\n{code}"],
         capture_output=True,

@@ -14,12 +14,12 @@ import pytest
 import radiokit as rk
 from radiokit.contracts.bsdf import BSDF
 from radiokit.faces.diagnosis.misconception import LANGUAGES
-from radiokit.faces.grading.answers import RefusedError, Taker
-from radiokit.faces.grading.evidence import LONGEST, clause, joined
 from radiokit.faces.grading.finding import Finding, Mode
-from radiokit.faces.grading.protocol import Array
-from radiokit.faces.grading.result import Result
-from radiokit.faces.grading.values import Values
+from radiokit.faces.grading.isolation.answers import RefusedError, Taker
+from radiokit.faces.grading.isolation.protocol import Array
+from radiokit.faces.grading.isolation.result import Result
+from radiokit.faces.grading.judges.evidence import LONGEST, clause, joined
+from radiokit.faces.grading.judges.values import Values
 from radiokit.faces.grading.words import SENTENCES, say, sentence
 from radiokit.facts.errors import ParameterError
 

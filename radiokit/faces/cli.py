@@ -90,8 +90,8 @@ def check(
 
     with ExitStack() as stack:
         if isolated:
-            from radiokit.faces.grading.limits import Limits
-            from radiokit.faces.grading.remote import open_isolated
+            from radiokit.faces.grading.isolation.limits import Limits
+            from radiokit.faces.grading.isolation.remote import open_isolated
             from radiokit.faces.targets import parse_parameters
 
             given = parse_parameters(context.args)

@@ -13,8 +13,8 @@ from types import ModuleType
 
 import numpy as np
 
-from radiokit.faces.grading.given import line_of
-from radiokit.faces.grading.limits import Limits
+from radiokit.faces.grading.isolation.limits import Limits
+from radiokit.faces.grading.judges.given import line_of
 from radiokit.faces.grading.names import check_names
 from radiokit.faces.grading.question import Part, Question
 from radiokit.faces.grading.words import Words, words

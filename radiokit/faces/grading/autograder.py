@@ -21,8 +21,8 @@ from radiokit.faces.grading.classroom.discovery import Entry
 from radiokit.faces.grading.classroom.reasons import NoSubmissionError
 from radiokit.faces.grading.formats.gradescope import to_gradescope
 from radiokit.faces.grading.formats.writing import json_text, write_file
-from radiokit.faces.grading.protocol import plain_text
-from radiokit.faces.grading.sandbox import Sandbox
+from radiokit.faces.grading.isolation.protocol import plain_text
+from radiokit.faces.grading.isolation.sandbox import Sandbox
 from radiokit.faces.grading.unfinished import no_submission
 
 __all__ = ["main", "student_of"]

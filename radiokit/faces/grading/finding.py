@@ -9,8 +9,8 @@ from typing import Any, Literal, Protocol
 import numpy as np
 
 from radiokit.contracts.bsdf import BSDF
-from radiokit.faces.grading.protocol import Array
-from radiokit.faces.grading.result import Result
+from radiokit.faces.grading.isolation.protocol import Array
+from radiokit.faces.grading.isolation.result import Result
 
 __all__ = ["Callee", "Finding", "Judge", "Mode"]
 

@@ -13,12 +13,12 @@ from radiokit.contracts.bsdf import BSDF
 from radiokit.faces.grading.assignment import Assignment, load_assignment, student_rng
 from radiokit.faces.grading.finding import Finding, Mode
 from radiokit.faces.grading.grades import Grade, PartGrade, QuestionGrade
-from radiokit.faces.grading.protocol import Array, plain_text
+from radiokit.faces.grading.isolation.protocol import Array, plain_text
+from radiokit.faces.grading.isolation.remote import remote_bsdf
+from radiokit.faces.grading.isolation.result import Result
+from radiokit.faces.grading.isolation.sandbox import Sandbox
 from radiokit.faces.grading.question import Part, Question
-from radiokit.faces.grading.remote import remote_bsdf
-from radiokit.faces.grading.result import Result
 from radiokit.faces.grading.russian import told, translated
-from radiokit.faces.grading.sandbox import Sandbox
 from radiokit.faces.grading.words import checked_language, say
 from radiokit.facts.errors import AssignmentError, CallableError, TargetError
 

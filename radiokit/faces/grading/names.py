@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from radiokit.faces.diagnosis.catalogue import CATALOGUE
+from radiokit.faces.grading.judges.samplewords import SLIPS
 from radiokit.faces.grading.question import Question
-from radiokit.faces.grading.samplewords import SLIPS
 from radiokit.facts.errors import ParameterError, suggestion
 
 __all__ = ["JUDGED", "check_names"]

@@ -110,7 +110,7 @@ class Question:
 
     Examples
     --------
-    >>> from radiokit.faces.grading.values import Values
+    >>> from radiokit.faces.grading.judges.values import Values
     >>> import numpy as np
     >>> judge = Values(inputs=lambda rng: {"x": rng.random(8)}, reference=lambda x: x**2)
     >>> both = {"en": "Square", "ru": "Квадрат"}

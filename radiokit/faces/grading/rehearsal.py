@@ -10,15 +10,15 @@ from typing import Any
 import numpy as np
 
 from radiokit.faces.grading.assignment import Assignment, load_assignment, student_rng
-from radiokit.faces.grading.estimator import Estimator
-from radiokit.faces.grading.exact import as_function
-from radiokit.faces.grading.given import drawn, number, numbers, own, shown, truth
-from radiokit.faces.grading.laws import Laws
-from radiokit.faces.grading.protocol import Array
+from radiokit.faces.grading.isolation.protocol import Array
+from radiokit.faces.grading.judges.estimator import Estimator
+from radiokit.faces.grading.judges.exact import as_function
+from radiokit.faces.grading.judges.given import drawn, number, numbers, own, shown, truth
+from radiokit.faces.grading.judges.laws import Laws
+from radiokit.faces.grading.judges.runs import exact
+from radiokit.faces.grading.judges.sampler import Sampler, called
+from radiokit.faces.grading.judges.values import Values
 from radiokit.faces.grading.question import Part, Question
-from radiokit.faces.grading.runs import exact
-from radiokit.faces.grading.sampler import Sampler, called
-from radiokit.faces.grading.values import Values
 from radiokit.facts.errors import AssignmentError, suggestion
 
 __all__ = ["faults", "rehearse", "rehearsed"]

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from functools import cache
 
-from radiokit.faces.grading.protocol import plain_text
+from radiokit.faces.grading.isolation.protocol import plain_text
 from radiokit.faces.grading.words import say
 from radiokit.facts.errors import CallableError, RadiokitError
 

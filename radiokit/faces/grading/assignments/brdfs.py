@@ -7,7 +7,7 @@ from radiokit.faces.grading.assignments._brdfs import functions as brdf
 from radiokit.faces.grading.assignments._brdfs import hints
 from radiokit.faces.grading.assignments._brdfs import variants as wrong
 from radiokit.faces.grading.assignments._brdfs.common import SECONDS, exponents, parts, shares, text, values
-from radiokit.faces.grading.laws import Laws
+from radiokit.faces.grading.judges.laws import Laws
 from radiokit.faces.grading.question import Part, Question
 
 __all__ = ["ASSIGNMENT"]

@@ -10,7 +10,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 import radiokit
-from radiokit.faces.grading.limits import Limits
+from radiokit.faces.grading.isolation.limits import Limits
 
 __all__ = ["code_digest", "fingerprint", "secret_digest"]
 

@@ -21,7 +21,7 @@ from radiokit.faces.grading.classroom.store import Store
 from radiokit.faces.grading.classroom.task import Done, Order, Task, assignment_of, failed, perform
 from radiokit.faces.grading.formats.writing import json_text
 from radiokit.faces.grading.grades import Grade
-from radiokit.faces.grading.limits import Limits
+from radiokit.faces.grading.isolation.limits import Limits
 from radiokit.faces.grading.rehearsal import rehearse
 from radiokit.faces.grading.unfinished import no_submission
 from radiokit.faces.grading.words import checked_language

@@ -20,8 +20,8 @@ from radiokit.faces.grading.classroom.reasons import reason
 from radiokit.faces.grading.formats.writing import json_text, write_file
 from radiokit.faces.grading.grader import grade
 from radiokit.faces.grading.grades import Grade
-from radiokit.faces.grading.limits import Limits
-from radiokit.faces.grading.protocol import plain_text
+from radiokit.faces.grading.isolation.limits import Limits
+from radiokit.faces.grading.isolation.protocol import plain_text
 from radiokit.faces.grading.record import continued, record
 from radiokit.faces.grading.unfinished import nothing_yet, with_pending
 from radiokit.facts.errors import RadiokitError

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from radiokit.faces.grading.limits import PROTECTIONS
+from radiokit.faces.grading.isolation.limits import PROTECTIONS
 from radiokit.faces.grading.words import Words
 
 __all__ = ["PHRASES", "phrase", "protection"]

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from radiokit.faces.grading.formats.phrases import phrase
 from radiokit.faces.grading.grades import Grade, PartGrade, QuestionGrade
-from radiokit.faces.grading.protocol import plain_text
+from radiokit.faces.grading.isolation.protocol import plain_text
 from radiokit.faces.grading.unfinished import is_pending
 
 __all__ = ["Line", "line_of", "notes_of", "number", "plain"]

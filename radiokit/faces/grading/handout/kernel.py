@@ -28,7 +28,7 @@ from radiokit.faces.grading.assignment import list_assignments
 from radiokit.faces.grading.grades import Grade, QuestionGrade
 from radiokit.faces.grading.handout.cells import code, notebook
 from radiokit.faces.grading.handout.texts import tell
-from radiokit.faces.grading.protocol import plain_text
+from radiokit.faces.grading.isolation.protocol import plain_text
 from radiokit.facts.errors import RadiokitError, TargetError
 
 __all__ = ["GRADED", "LATER", "FeedbackError", "in_words", "kernel_check", "kernel_points", "submitted"]

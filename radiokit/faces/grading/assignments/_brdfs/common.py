@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from radiokit.faces.grading.assignments._brdfs import functions as brdf
-from radiokit.faces.grading.laws import Laws
+from radiokit.faces.grading.judges.laws import Laws
+from radiokit.faces.grading.judges.values import Values
 from radiokit.faces.grading.question import Part
-from radiokit.faces.grading.values import Values
 from radiokit.faces.grading.words import Words
 
 __all__ = ["SECONDS", "exponents", "parts", "shares", "text", "values"]

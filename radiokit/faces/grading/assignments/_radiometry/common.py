@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from radiokit.faces.grading.judges.values import Values
 from radiokit.faces.grading.question import Part, Question
-from radiokit.faces.grading.values import Values
 from radiokit.faces.grading.words import Words
 
 __all__ = [

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from radiokit.contracts.emitter import emitter
-from radiokit.faces.grading.estimator import Estimator
+from radiokit.faces.grading.judges.estimator import Estimator
 from radiokit.faces.grading.question import Part, Question
 from radiokit.measure.gauss import gauss_legendre
 

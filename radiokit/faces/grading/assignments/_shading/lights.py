@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from radiokit.faces.grading.judges.values import Values
 from radiokit.faces.grading.question import Part, Question
-from radiokit.faces.grading.values import Values
 from radiokit.physics.view_factor import differential_to_sphere
 
 __all__ = ["DIRECT_LIGHT", "MIS_WEIGHT", "SPHERE_IRRADIANCE"]

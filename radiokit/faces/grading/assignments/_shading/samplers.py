@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from radiokit.faces.grading.judges.sampler import Sampler
 from radiokit.faces.grading.question import Part, Question
-from radiokit.faces.grading.sampler import Sampler
 
 __all__ = ["COSINE_SAMPLE", "LOBE_SAMPLE"]
 

@@ -13,15 +13,23 @@ import numpy as np
 from radiokit.faces.diagnosis.catalogue import CATALOGUE
 from radiokit.faces.diagnosis.diagnose import diagnose
 from radiokit.faces.diagnosis.result import Diagnosis
-from radiokit.faces.grading.arguments import argument_mistakes
-from radiokit.faces.grading.asking import asked, close, fitted, is_extreme, is_right
-from radiokit.faces.grading.digits import DOUBLE, FEWEST, SINGLE, lost
-from radiokit.faces.grading.evidence import at, clause, guesses, hint_for, joined, wrong_at
-from radiokit.faces.grading.exact import Reference, as_function, no_inputs
 from radiokit.faces.grading.finding import Callee, Finding
-from radiokit.faces.grading.given import check_functions, check_shares, drawn, is_within, numbers, own, truth
-from radiokit.faces.grading.protocol import Array
-from radiokit.faces.grading.result import Result
+from radiokit.faces.grading.isolation.protocol import Array
+from radiokit.faces.grading.isolation.result import Result
+from radiokit.faces.grading.judges.arguments import argument_mistakes
+from radiokit.faces.grading.judges.asking import asked, close, fitted, is_extreme, is_right
+from radiokit.faces.grading.judges.digits import DOUBLE, FEWEST, SINGLE, lost
+from radiokit.faces.grading.judges.evidence import at, clause, guesses, hint_for, joined, wrong_at
+from radiokit.faces.grading.judges.exact import Reference, as_function, no_inputs
+from radiokit.faces.grading.judges.given import (
+    check_functions,
+    check_shares,
+    drawn,
+    is_within,
+    numbers,
+    own,
+    truth,
+)
 from radiokit.faces.grading.russian import did
 from radiokit.faces.grading.words import say, sentence
 from radiokit.facts.errors import ParameterError

@@ -19,11 +19,11 @@ import numpy as np
 
 from radiokit.contracts.blackbox import as_bsdf
 from radiokit.contracts.bsdf import BSDF
-from radiokit.faces.grading.answers import RefusedError, Taker
 from radiokit.faces.grading.finding import Mode
-from radiokit.faces.grading.protocol import Array, plain_text
-from radiokit.faces.grading.result import Result
-from radiokit.faces.grading.signature import listed, renamed
+from radiokit.faces.grading.isolation.answers import RefusedError, Taker
+from radiokit.faces.grading.isolation.protocol import Array, plain_text
+from radiokit.faces.grading.isolation.result import Result
+from radiokit.faces.grading.isolation.signature import listed, renamed
 
 __all__ = ["Here"]
 

@@ -19,7 +19,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from radiokit.faces.grading.sources import cells, starts, without_magics, without_tools
+from radiokit.faces.grading.isolation.sources import cells, starts, without_magics, without_tools
 
 __all__ = ["Submission", "prepare", "told"]
 

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from radiokit.faces.grading.finding import Callee, Mode
-from radiokit.faces.grading.protocol import Array
-from radiokit.faces.grading.result import Result
+from radiokit.faces.grading.isolation.protocol import Array
+from radiokit.faces.grading.isolation.result import Result
 from radiokit.faces.grading.words import say
 
 __all__ = ["asked", "close", "fitted", "is_extreme", "is_right", "out_of_range"]

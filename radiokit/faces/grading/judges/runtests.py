@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from radiokit.faces.grading.protocol import Array
-from radiokit.faces.grading.runs import Runs
+from radiokit.faces.grading.isolation.protocol import Array
+from radiokit.faces.grading.judges.runs import Runs
 
 __all__ = [
     "LEVEL",

@@ -12,8 +12,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from radiokit.faces.grading.limits import PROTECTIONS
-from radiokit.faces.grading.protocol import Array, MalformedError, plain_text
+from radiokit.faces.grading.isolation.limits import PROTECTIONS
+from radiokit.faces.grading.isolation.protocol import Array, MalformedError, plain_text
 
 __all__ = ["Result", "judged", "steady"]
 

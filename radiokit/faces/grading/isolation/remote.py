@@ -14,10 +14,10 @@ import numpy as np
 from radiokit.contracts.blackbox import BlackBox, as_bsdf
 from radiokit.contracts.bsdf import BSDF, FloatArray
 from radiokit.contracts.calling import Mode
-from radiokit.faces.grading.limits import Limits
-from radiokit.faces.grading.protocol import plain_text
-from radiokit.faces.grading.sandbox import Sandbox
-from radiokit.faces.grading.signature import renamed
+from radiokit.faces.grading.isolation.limits import Limits
+from radiokit.faces.grading.isolation.protocol import plain_text
+from radiokit.faces.grading.isolation.sandbox import Sandbox
+from radiokit.faces.grading.isolation.signature import renamed
 from radiokit.facts.errors import CallableError, TargetError, suggestion
 
 __all__ = ["is_pairwise", "open_isolated", "remote_bsdf"]

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from radiokit.faces.grading.asking import close, out_of_range
-from radiokit.faces.grading.evidence import rows
-from radiokit.faces.grading.protocol import Array
+from radiokit.faces.grading.isolation.protocol import Array
+from radiokit.faces.grading.judges.asking import close, out_of_range
+from radiokit.faces.grading.judges.evidence import rows
 
 __all__ = ["DOUBLE", "FEWEST", "SINGLE", "lost"]
 

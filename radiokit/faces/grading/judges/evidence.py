@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from radiokit.faces.grading.protocol import Array, plain_text
+from radiokit.faces.grading.isolation.protocol import Array, plain_text
 from radiokit.faces.grading.russian import translated
 from radiokit.faces.grading.words import say, sentence
 

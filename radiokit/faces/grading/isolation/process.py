@@ -23,9 +23,9 @@ import numpy as np
 import numpy.typing as npt
 
 import radiokit
-from radiokit.faces.grading.limits import PROTECTIONS, Limits
-from radiokit.faces.grading.protocol import Array, Assembler, MalformedError, plain_text
-from radiokit.faces.grading.result import steady
+from radiokit.faces.grading.isolation.limits import PROTECTIONS, Limits
+from radiokit.faces.grading.isolation.protocol import Array, Assembler, MalformedError, plain_text
+from radiokit.faces.grading.isolation.result import steady
 from radiokit.facts.errors import ParameterError, RadiokitError
 
 __all__ = ["ChildProcess", "LateError", "StoppedError", "carried", "started"]

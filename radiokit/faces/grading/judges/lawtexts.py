@@ -9,8 +9,8 @@ import numpy as np
 
 from radiokit.checks.probes import channels, polar
 from radiokit.contracts.bsdf import BSDF, FloatArray
-from radiokit.faces.grading.lawwords import tell
-from radiokit.faces.grading.protocol import plain_text
+from radiokit.faces.grading.isolation.protocol import plain_text
+from radiokit.faces.grading.judges.lawwords import tell
 from radiokit.faces.grading.russian import did
 from radiokit.faces.grading.words import say
 from radiokit.facts.errors import CallableError

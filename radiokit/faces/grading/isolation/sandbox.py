@@ -15,10 +15,10 @@ from typing import Any, Literal
 
 import numpy.typing as npt
 
-from radiokit.faces.grading.limits import Limits
-from radiokit.faces.grading.process import ChildProcess, LateError, StoppedError, carried, started
-from radiokit.faces.grading.protocol import ARRAYS, Array, MalformedError, pack
-from radiokit.faces.grading.result import Result, judged
+from radiokit.faces.grading.isolation.limits import Limits
+from radiokit.faces.grading.isolation.process import ChildProcess, LateError, StoppedError, carried, started
+from radiokit.faces.grading.isolation.protocol import ARRAYS, Array, MalformedError, pack
+from radiokit.faces.grading.isolation.result import Result, judged
 from radiokit.facts.errors import ParameterError, RadiokitError
 
 __all__ = ["Sandbox"]

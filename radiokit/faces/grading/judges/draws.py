@@ -11,12 +11,12 @@ from typing import Any, ClassVar
 import numpy as np
 
 from radiokit.checks.cells import CELLS, Cells
-from radiokit.faces.grading.directions import ABOVE
 from radiokit.faces.grading.finding import Callee, Finding, Mode
-from radiokit.faces.grading.protocol import Array
-from radiokit.faces.grading.runs import SAME, UnusableError
+from radiokit.faces.grading.isolation.protocol import Array
+from radiokit.faces.grading.judges.directions import ABOVE
+from radiokit.faces.grading.judges.runs import SAME, UnusableError
+from radiokit.faces.grading.judges.samplewords import line, slip, tell
 from radiokit.faces.grading.russian import did
-from radiokit.faces.grading.samplewords import line, slip, tell
 from radiokit.faces.grading.words import say
 from radiokit.facts.errors import ParameterError
 from radiokit.measure.slope import find_lobe

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from radiokit.checks.cells import Cells
-from radiokit.faces.grading.protocol import Array
+from radiokit.faces.grading.isolation.protocol import Array
 from radiokit.measure.quadrature import hemisphere
 from radiokit.measure.slope import find_lobe, slope_map
 

@@ -9,12 +9,12 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from radiokit.faces.grading.exact import Reference, as_function, no_inputs
 from radiokit.faces.grading.finding import Callee, Finding
-from radiokit.faces.grading.given import check_functions, check_shares, number
-from radiokit.faces.grading.protocol import Array
-from radiokit.faces.grading.runs import FLOOR, Runs, UnusableError, gather
-from radiokit.faces.grading.runtests import (
+from radiokit.faces.grading.isolation.protocol import Array
+from radiokit.faces.grading.judges.exact import Reference, as_function, no_inputs
+from radiokit.faces.grading.judges.given import check_functions, check_shares, number
+from radiokit.faces.grading.judges.runs import FLOOR, Runs, UnusableError, gather
+from radiokit.faces.grading.judges.runtests import (
     ROUNDS,
     bias,
     claims,
@@ -26,8 +26,8 @@ from radiokit.faces.grading.runtests import (
     rate_slip,
     swapped,
 )
-from radiokit.faces.grading.samplewords import line, slip, tell
-from radiokit.faces.grading.suspects import behind_means
+from radiokit.faces.grading.judges.samplewords import line, slip, tell
+from radiokit.faces.grading.judges.suspects import behind_means
 from radiokit.faces.grading.words import say
 from radiokit.facts.errors import ParameterError
 

@@ -11,11 +11,11 @@ import numpy as np
 from radiokit.checks.probes import pairs
 from radiokit.contracts.bsdf import BSDF
 from radiokit.faces.diagnosis.diagnose import diagnose
-from radiokit.faces.grading.evidence import clause, hint_for
-from radiokit.faces.grading.lawtexts import place_of
-from radiokit.faces.grading.lawwords import tell
-from radiokit.faces.grading.protocol import Array
-from radiokit.faces.grading.values import SURE
+from radiokit.faces.grading.isolation.protocol import Array
+from radiokit.faces.grading.judges.evidence import clause, hint_for
+from radiokit.faces.grading.judges.lawtexts import place_of
+from radiokit.faces.grading.judges.lawwords import tell
+from radiokit.faces.grading.judges.values import SURE
 from radiokit.faces.grading.words import say
 
 __all__ = ["Likeness", "compared"]

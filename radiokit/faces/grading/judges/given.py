@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from radiokit.faces.grading.protocol import Array
+from radiokit.faces.grading.isolation.protocol import Array
 from radiokit.facts.errors import AssignmentError, ParameterError, RadiokitError
 
 __all__ = [

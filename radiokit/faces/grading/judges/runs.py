@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 
 from radiokit.faces.grading.finding import Callee, Finding
-from radiokit.faces.grading.given import drawn, number
-from radiokit.faces.grading.protocol import Array
-from radiokit.faces.grading.result import Result
+from radiokit.faces.grading.isolation.protocol import Array
+from radiokit.faces.grading.isolation.result import Result
+from radiokit.faces.grading.judges.given import drawn, number
+from radiokit.faces.grading.judges.samplewords import line, slip, tell
 from radiokit.faces.grading.russian import did
-from radiokit.faces.grading.samplewords import line, slip, tell
 from radiokit.facts.errors import AssignmentError
 
 __all__ = ["FLOOR", "Runs", "UnusableError", "described", "exact", "gather"]

@@ -10,7 +10,9 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from radiokit.faces.grading.directions import (
+from radiokit.faces.grading.finding import Callee, Finding
+from radiokit.faces.grading.isolation.protocol import Array
+from radiokit.faces.grading.judges.directions import (
     ABOVE,
     ASKED,
     UNIFORM,
@@ -19,15 +21,13 @@ from radiokit.faces.grading.directions import (
     probes,
     uniform_variance,
 )
-from radiokit.faces.grading.draws import Draws, Fit, cells_of_density, sampled, u_slip
-from radiokit.faces.grading.exact import no_inputs
-from radiokit.faces.grading.finding import Callee, Finding
-from radiokit.faces.grading.given import check_functions, check_shares, drawn, numbers, own, shown
-from radiokit.faces.grading.protocol import Array
-from radiokit.faces.grading.runs import UnusableError
-from radiokit.faces.grading.runtests import ROUNDS, each_level
-from radiokit.faces.grading.samplewords import line, slip, tell
-from radiokit.faces.grading.suspects import behind_density
+from radiokit.faces.grading.judges.draws import Draws, Fit, cells_of_density, sampled, u_slip
+from radiokit.faces.grading.judges.exact import no_inputs
+from radiokit.faces.grading.judges.given import check_functions, check_shares, drawn, numbers, own, shown
+from radiokit.faces.grading.judges.runs import UnusableError
+from radiokit.faces.grading.judges.runtests import ROUNDS, each_level
+from radiokit.faces.grading.judges.samplewords import line, slip, tell
+from radiokit.faces.grading.judges.suspects import behind_density
 from radiokit.facts.errors import AssignmentError, ParameterError
 from radiokit.measure.slope import find_lobe
 from radiokit.measure.statistics import bernstein_test

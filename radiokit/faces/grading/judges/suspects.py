@@ -10,12 +10,12 @@ import numpy as np
 from radiokit.faces.diagnosis.catalogue import CATALOGUE
 from radiokit.faces.diagnosis.diagnose import diagnose
 from radiokit.faces.diagnosis.result import Suspicion
-from radiokit.faces.grading.evidence import clause, guesses
-from radiokit.faces.grading.given import number, own
-from radiokit.faces.grading.protocol import Array
-from radiokit.faces.grading.runs import Runs
+from radiokit.faces.grading.isolation.protocol import Array
+from radiokit.faces.grading.judges.evidence import clause, guesses
+from radiokit.faces.grading.judges.given import number, own
+from radiokit.faces.grading.judges.runs import Runs
+from radiokit.faces.grading.judges.samplewords import PLAIN, slip
 from radiokit.faces.grading.russian import translated
-from radiokit.faces.grading.samplewords import PLAIN, slip
 from radiokit.faces.grading.words import say
 
 __all__ = ["behind_density", "behind_means"]

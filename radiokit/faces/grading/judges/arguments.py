@@ -10,7 +10,7 @@ import numpy as np
 
 from radiokit.faces.diagnosis.misconception import LANGUAGES, Guess, Misconception, structural
 from radiokit.faces.diagnosis.problem import Problem
-from radiokit.faces.grading.protocol import Array
+from radiokit.faces.grading.isolation.protocol import Array
 from radiokit.faces.grading.words import say
 
 __all__ = ["argument_mistakes"]

@@ -29,7 +29,7 @@ class Taker:
     >>> Taker(1 << 20).outputs(5.0, 2)
     Traceback (most recent call last):
         ...
-    radiokit.faces.grading.answers.RefusedError: returned one value where 2 are wanted, as in return a, b
+    radiokit.faces.grading...RefusedError: returned one value where 2 are wanted, as in return a, b
     """
 
     def __init__(self, limit: int) -> None:

@@ -14,9 +14,9 @@ from typing import Any
 
 from radiokit.faces.grading.assignment import Assignment, load_assignment, student_rng
 from radiokit.faces.grading.finding import Finding
+from radiokit.faces.grading.handout.here import Here
 from radiokit.faces.grading.handout.texts import tell
-from radiokit.faces.grading.here import Here
-from radiokit.faces.grading.protocol import plain_text
+from radiokit.faces.grading.isolation.protocol import plain_text
 from radiokit.faces.grading.question import Question
 from radiokit.faces.grading.russian import told, translated
 from radiokit.faces.grading.words import checked_language, say

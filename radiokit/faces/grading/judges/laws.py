@@ -12,11 +12,11 @@ import numpy as np
 from radiokit.checks.judge import check
 from radiokit.contracts.bsdf import BSDF
 from radiokit.faces.grading.finding import Callee, Finding
-from radiokit.faces.grading.given import check_functions, own, shown
-from radiokit.faces.grading.lawtexts import failed, found, remarks, share_of_light
-from radiokit.faces.grading.lawwords import law_name, tell
-from radiokit.faces.grading.likeness import Likeness, compared
-from radiokit.faces.grading.remote import is_pairwise
+from radiokit.faces.grading.isolation.remote import is_pairwise
+from radiokit.faces.grading.judges.given import check_functions, own, shown
+from radiokit.faces.grading.judges.lawtexts import failed, found, remarks, share_of_light
+from radiokit.faces.grading.judges.lawwords import law_name, tell
+from radiokit.faces.grading.judges.likeness import Likeness, compared
 from radiokit.faces.grading.words import say, sentence
 from radiokit.facts.errors import AssignmentError, CallableError, ParameterError
 from radiokit.facts.report import Report
