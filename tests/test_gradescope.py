@@ -19,8 +19,8 @@ import jsonschema
 import pytest
 
 import radiokit as rk
+from radiokit.faces.grading import autograder, grader
 from radiokit.faces.grading.autograder import main, student_of
-from radiokit.faces.grading.formats import autograder, grader
 from radiokit.faces.grading.formats.gradescope_zip import pinned_requirements
 from radiokit.faces.grading.isolation.sandbox import Sandbox
 from radiokit.facts.errors import ParameterError, RadiokitError, TargetError

@@ -19,9 +19,10 @@ from radiokit.facts.errors import CallableError, TargetError
 
 G = rk.grading
 PACKAGE = Path(rk.__path__[0])
-SANDBOX = ("sandbox", "process", "result", "protocol", "child", "loading", "answers", "here", "remote")
+SANDBOX = ("sandbox", "process", "result", "protocol", "child", "loading", "answers", "remote")
 FILES = [
-    *(PACKAGE / "faces" / "grading" / f"{name}.py" for name in SANDBOX),
+    *(PACKAGE / "faces" / "grading" / "isolation" / f"{name}.py" for name in SANDBOX),
+    PACKAGE / "faces" / "grading" / "handout" / "here.py",
     *(PACKAGE / "contracts" / f"{name}.py" for name in ("calling", "blackbox")),
 ]
 RAISED = {"RefusedError": 0, "MalformedError": 0, "StoppedError": 0, "LateError": 0, "CallableError": 1}

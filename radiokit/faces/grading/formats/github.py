@@ -108,8 +108,8 @@ def github_workflow(
 ) -> str:
     """Return a workflow for ``.github/workflows/classroom.yml`` that grades every push.
 
-    A student can read what a workflow in a repository of his own can read, its secrets and the assignment
-    among it: use it for feedback, and grade again where students cannot reach for what counts.
+    A student can read and change what a workflow in a repository of his own does, its secrets and the
+    assignment among it: use it for feedback, and grade again where students cannot reach for what counts.
 
     Parameters
     ----------

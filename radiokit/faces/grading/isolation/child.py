@@ -20,7 +20,7 @@ from typing import Any
 
 __all__: list[str] = []
 
-PACKAGE = "radiokit.faces.grading."
+PACKAGE = "radiokit.faces.grading.isolation."
 PARTS = ("sources", "imports", "protocol", "loading", "answers", "signature")
 HIGH = 40
 """The first file descriptor tried for the private pipes."""
