@@ -26,7 +26,7 @@ FILES = [
     *(PACKAGE / "contracts" / f"{name}.py" for name in ("calling", "blackbox")),
 ]
 RAISED = {"RefusedError": 0, "MalformedError": 0, "StoppedError": 0, "LateError": 0, "CallableError": 1}
-KEPT = {"None", "return", "a", "b", "JSON", "Jupyter", "IPython", "float"}
+KEPT = {"None", "return", "a", "b", "eta", "JSON", "Jupyter", "IPython", "float"}
 """What is code, or a name, and stays as it is."""
 
 

@@ -90,6 +90,8 @@ OUTCOMES: tuple[tuple[str, str], ...] = (
         "returned shapes {first} and {second} for {count} points",
         "вернула формы {first} и {second}, а точек {count}",
     ),
+    ("returned shape {shape} after {before}", "вернула форму {shape} после {before}"),
+    ("has eta = {eta}, which is no refractive index", "имеет eta = {eta}, а это не показатель преломления"),
     ("{count} bytes", "{count} байт"),
     ("{count} kB", "{count} кБ"),
     ("{count} MB", "{count} МБ"),
