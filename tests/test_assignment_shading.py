@@ -374,7 +374,7 @@ PLANTED: dict[str, tuple[dict[str, Function], dict[str, tuple[str, float]]]] = {
 }
 
 
-@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # some slips divide by 0, and run in this process
 @pytest.mark.parametrize("name", PLANTED)
 def test_a_slip_costs_its_points_and_is_told(name: str, local_callee: Any) -> None:
     functions, wrong = PLANTED[name]

@@ -225,3 +225,25 @@ def test_a_channel_that_no_longer_waits_is_mended_for_the_next_part(tmp_path):
             time.sleep(0.1)
         large = sandbox.call("attack", np.arange(1e6))
         assert large.ok, large.error
+
+
+def test_a_question_of_two_parts_has_its_time_once(tmp_path, monkeypatch):
+    spent = []
+    call = G.Sandbox.call
+
+    def spy(*arguments, **options):
+        result = call(*arguments, **options)
+        spent.append(result.seconds)
+        return result
+
+    monkeypatch.setattr(G.Sandbox, "call", spy)
+    path = tmp_path / "submission.py"
+    path.write_text("def attack(x):\n    while True: pass\ndef honest(x): return 2 * x\n", encoding="utf-8")
+    (first, other) = assignment(1).questions
+    parts = (*first.parts, dataclasses.replace(first.parts[0], name="ordinary"))
+    work = dataclasses.replace(assignment(1), questions=(dataclasses.replace(first, parts=parts), other))
+    found = G.grade(work, path)
+    assert [re.search(SLOW, part.text) is not None for part in found["attack"].parts] == [True, True]
+    assert spent[0] >= 1  # the second part is told at once
+    assert spent[1] == 0
+    assert found["honest"].score == 1

@@ -152,7 +152,23 @@ def _judged(
     secret: str,
     language: str,
 ) -> tuple[dict[str, Finding], str, dict[str, float]]:
-    """Return the finding of each part, why a person should look, and what was measured."""
+    """Return the finding of each part, why a person should look, and what was measured.
+
+    The parts share the question's time, so that one that hangs cannot cost it again in the next.
+    """
+    with sandbox.within(question.seconds):
+        return _judged_parts(sandbox, work, question, absent, student, secret, language)
+
+
+def _judged_parts(
+    sandbox: Sandbox,
+    work: Assignment,
+    question: Question,
+    absent: Mapping[str, Finding | None],
+    student: str,
+    secret: str,
+    language: str,
+) -> tuple[dict[str, Finding], str, dict[str, float]]:
     found: dict[str, Finding] = {}
     review = ""
     numbers: dict[str, float] = {}
@@ -165,7 +181,7 @@ def _judged(
         rng = student_rng(work, question, part, student=student, secret=secret)
         shown = part.visibility == "visible"
         try:
-            with sandbox.apart(), sandbox.within(question.seconds):
+            with sandbox.apart():
                 finding = part.judge.judge(
                     Isolated(sandbox, name),
                     rng,

@@ -100,7 +100,7 @@ class Question:
         Further sentences ``{"en": ..., "ru": ...}`` by the misconception that they answer, one of
         ``rk.list_misconceptions()`` or of a judge's ``variants``.
     seconds : float
-        Wall time for all calls of one part together [s], above 0.
+        Wall time for all calls of all its parts together [s], above 0.
 
     Raises
     ------

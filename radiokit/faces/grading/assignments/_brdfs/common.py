@@ -21,7 +21,7 @@ Function = Callable[..., Array]
 Draw = Callable[[Generator, int], Array]
 
 SECONDS = 60.0
-"""For all calls of one part [s]: functions of single pairs take a few seconds before the laws."""
+"""For all calls of one question [s]: functions of single pairs take a few seconds before the laws."""
 
 LAWS: Words = {"en": "the laws of a BRDF", "ru": "законы ДФО"}
 
