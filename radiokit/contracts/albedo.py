@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any, Literal
 
 import numpy as np
@@ -29,8 +30,6 @@ Part = Literal["both", "reflected", "transmitted"]
 
 SAMPLES, MOST_SAMPLES = 1 << 20, 1 << 24
 """Samples for each direction by default, and at most when a relative error is asked for."""
-
-_SHORTEST = 1e-6  # seconds for a direction when the others have used up the time: one block
 
 
 def albedo(
@@ -65,7 +64,7 @@ def albedo(
         Relative error that is asked for: of the quadrature, 1e-8 unless it is given; of Monte Carlo, whose
         standard error it is, to stop early, at a number of samples that does not depend on the processors.
     seconds : float, optional
-        For Monte Carlo: stop after so much time [s], of which each direction gets an equal share.
+        For Monte Carlo: stop after so much time [s]. Directions take turns, with equally many samples each.
     samples, rng
         For Monte Carlo: the number of samples for each direction (``qmc`` rounds it down to 16 times a power
         of 2), and the seed. With ``rtol`` or ``seconds`` it is the most that are drawn. By default 2²⁰, with
@@ -118,26 +117,21 @@ def albedo(
         if seconds is not None:
             raise ParameterError("seconds", seconds, "None, or method 'mc' or 'qmc'")
         aim = 1e-8 if rtol is None else rtol
-        one = lambda w, share: directional_albedo(model, w, fixed=fixed, side=side, rtol=aim)  # noqa: E731
+        one = partial(directional_albedo, model, fixed=fixed, side=side, rtol=aim)
     elif method in ("mc", "qmc"):
         if fixed == "wi":
             raise ParameterError("method", method, "'quadrature' when wi is held fixed")
-        seed = int(np.random.default_rng(rng).integers(1 << 63))
-        sampled = _monte_carlo if method == "mc" else _low_discrepancy
         if samples is None and seconds is None:
             samples = SAMPLES if rtol is None else MOST_SAMPLES
-        one = lambda w, share: sampled(  # noqa: E731
-            model, w, seed, side, samples=samples, rtol=rtol, seconds=None if seconds is None else share
-        )
+        seed = int(np.random.default_rng(rng).integers(1 << 63))
+        sampled = _monte_carlo if method == "mc" else _low_discrepancy
+        one = partial(sampled, model, seed=seed, side=side, samples=samples, rtol=rtol, seconds=seconds)
     else:
         raise ParameterError("method", method, "'quadrature', 'mc' or 'qmc'")
-    if wo.ndim == 1:
-        return one(wo, seconds or 0.0)
+    if wo.ndim == 1 or (seconds is not None and len(wo)):
+        return one(wo)
     start = time.perf_counter()
-    found = []
-    for index, w in enumerate(wo):
-        left = (seconds or 0.0) - (time.perf_counter() - start)
-        found.append(one(w, max(left / (len(wo) - index), _SHORTEST)))
+    found = [one(w) for w in wo]
     notes = list(dict.fromkeys(estimate.note for estimate in found if estimate.note))
     return Estimate(
         np.array([estimate.value for estimate in found]),
@@ -247,21 +241,36 @@ def _sampled_share(model: BSDF, u: FloatArray, wo: FloatArray, side: Part) -> An
     return (weight.T * ((wi[:, 2] * wo[2] > 0) == (side == "reflected"))).T
 
 
-def _monte_carlo(model: BSDF, wo: FloatArray, seed: int, side: Part, **stop: Any) -> Estimate:
-    from radiokit.measure.fused import fused_mean
-
-    def weight(*u: FloatArray) -> Any:
-        return _sampled_share(model, np.stack(u, axis=-1), wo, side)
+def _monte_carlo(model: BSDF, wo: FloatArray, *, seed: int, side: Part, **stop: Any) -> Estimate:
+    """Return the albedo for one direction (3,), or for several together (N, 3)."""
+    from radiokit.measure.fused import fused_mean, fused_means
 
     plain = side == "both" and model.relative_index() == 1.0  # a weight is a share of flux as it is
-    function, constants = (model.weight_kernel(wo) if plain else None) or (weight, ())
-    method = "Monte Carlo, BSDF-sampled"
-    return fused_mean(function, constants, dimensions=model.dimensions, rng=seed, method=method, **stop)
+
+    def term(w: FloatArray) -> Any:
+        def weight(*u: FloatArray) -> Any:
+            return _sampled_share(model, np.stack(u, axis=-1), w, side)
+
+        return (model.weight_kernel(w) if plain else None) or (weight, ())
+
+    options = {"dimensions": model.dimensions, "rng": seed, "method": "Monte Carlo, BSDF-sampled", **stop}
+    if wo.ndim == 1:
+        return fused_mean(*term(wo), **options)
+    return fused_means([term(w) for w in wo], **options)
 
 
-def _low_discrepancy(model: BSDF, wo: FloatArray, seed: int, side: Part, **stop: Any) -> Estimate:
-    def draw(u: FloatArray) -> Any:
-        return _sampled_share(model, u, wo, side)
-
+def _low_discrepancy(model: BSDF, wo: FloatArray, *, seed: int, side: Part, **stop: Any) -> Estimate:
+    """Return the albedo for one direction (3,), or for several together (N, 3)."""
     method = "shifted lattices, BSDF-sampled"
-    return lowdiscrepancy.mean(draw, dimensions=model.dimensions, rng=seed, method=method, **stop)
+    options = {"dimensions": model.dimensions, "rng": seed, "method": method, **stop}
+    if wo.ndim == 1:
+        return lowdiscrepancy.mean(lambda u: _sampled_share(model, u, wo, side), **options)
+    middle = np.full((1, model.dimensions), 0.5)
+    shape = (len(wo), *np.shape(_sampled_share(model, middle, wo[0], side))[1:])
+
+    def draw(u: FloatArray) -> Any:
+        return np.stack([_sampled_share(model, u, w, side) for w in wo], axis=1).reshape(len(u), -1)
+
+    found = lowdiscrepancy.mean(draw, **options)
+    value, error = np.reshape(found.value, shape), np.reshape(found.error, shape)
+    return replace(found, value=value, error=error, evaluations=len(wo) * found.evaluations)

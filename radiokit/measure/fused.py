@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from typing import Any
 
@@ -18,7 +19,7 @@ from radiokit.measure.moments import Moments
 from radiokit.measure.montecarlo import BlockDraw, mean
 from radiokit.measure.passes import processors
 
-__all__ = ["FusedDraw", "fused_mean", "points"]
+__all__ = ["FusedDraw", "fused_mean", "fused_means", "points"]
 
 BLOCK = 1 << 20
 """Samples in a block, which is what a thread takes at a time: a few milliseconds of work."""
@@ -151,6 +152,18 @@ class FusedDraw(BlockDraw):
         return str(getattr(self.function, "__qualname__", type(self.function).__qualname__))
 
 
+@dataclass(frozen=True)
+class _Together(BlockDraw):
+    """Several draws, of which each block has its share: they get equally far, whatever ends them."""
+
+    draws: tuple[FusedDraw, ...]
+
+    def moments(self, seed: int, first: int, count: int) -> Moments:
+        found = [draw.moments(seed, first, count) for draw in self.draws]
+        fields = ("mean", "m2", "low", "high")
+        return Moments(count, *(np.array([getattr(each, name) for each in found]) for name in fields))
+
+
 def fused_mean(
     function: Any,
     parameters: tuple[float, ...] = (),
@@ -200,20 +213,66 @@ def fused_mean(
     >>> estimate.covers(0.25, level=0.9999)
     True
     """
-    count = workers
-    if count is None:
-        count = processors() if isinstance(function, Kernel) else 1
-    if type(count) is not int or count < 1:
-        raise ParameterError("workers", workers, "an integer, at least 1, or None")
+    draw = _draw(function, parameters, dimensions)
+    block, threads = _blocking(function, workers)
+    return _run(draw, block, threads, samples=samples, rng=rng, rtol=rtol, seconds=seconds, method=method)
+
+
+def fused_means(
+    terms: Sequence[tuple[Any, tuple[float, ...]]],
+    *,
+    dimensions: int = 2,
+    samples: int | None,
+    rng: int | np.random.Generator | None = None,
+    rtol: float | None = None,
+    seconds: float | None = None,
+    workers: int | None = None,
+    method: str = "Monte Carlo",
+) -> Estimate:
+    """Return the means of several functions, each over equally many of the same points.
+
+    They take turns, block by block: when the time is up, or all are within ``rtol``, none has had more than
+    another. Each is what ``fused_mean`` gives for that many samples.
+
+    Parameters
+    ----------
+    terms : sequence of (Kernel or callable, tuple of float)
+        At least one: functions with their parameters, all kernels or all none.
+    dimensions, samples, rng, rtol, seconds, workers, method
+        As for ``fused_mean``; ``samples`` are those of each. The estimate's ``evaluations`` are of all.
+
+    >>> found = fused_means([(lambda u0, u1: u0, ()), (lambda u0, u1: u1, ())], samples=1000, rng=1)
+    >>> found.value.shape, found.evaluations
+    ((2,), 2000)
+    """
+    draw = _Together(tuple(_draw(function, parameters, dimensions) for function, parameters in terms))
+    block, threads = _blocking(terms[0][0], workers)
+    found = _run(draw, block, threads, samples=samples, rng=rng, rtol=rtol, seconds=seconds, method=method)
+    return replace(found, evaluations=len(terms) * found.evaluations)
+
+
+def _draw(function: Any, parameters: tuple[float, ...], dimensions: int) -> FusedDraw:
     if dimensions not in (2, 3):
         raise ParameterError("dimensions", dimensions, "2 or 3")
     draw = FusedDraw(function, tuple(map(float, parameters)), dimensions)
     draw.prepare()
-    block = BLOCK if isinstance(function, Kernel) else _PIECE  # which may be slow
-    run = partial(
-        mean, draw, samples=samples, rng=rng, block=block, rtol=rtol, seconds=seconds, method=method
-    )
-    if count == 1 or (samples is not None and (type(samples) is not int or samples <= block)):
+    return draw
+
+
+def _blocking(function: Any, workers: int | None) -> tuple[int, int]:
+    """Return the samples in a block, and how many threads draw them."""
+    kernel = isinstance(function, Kernel)
+    threads = workers
+    if threads is None:
+        threads = processors() if kernel else 1
+    if type(threads) is not int or threads < 1:
+        raise ParameterError("workers", workers, "an integer, at least 1, or None")
+    return BLOCK if kernel else _PIECE, threads  # what is no kernel may be slow
+
+
+def _run(draw: BlockDraw, block: int, threads: int, *, samples: int | None, **options: Any) -> Estimate:
+    run = partial(mean, draw, block=block, samples=samples, **options)
+    if threads == 1 or (samples is not None and (type(samples) is not int or samples <= block)):
         return run()
-    with ThreadPoolExecutor(count) as pool:
+    with ThreadPoolExecutor(threads) as pool:
         return run(executor=pool)

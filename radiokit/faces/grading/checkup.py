@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import statistics
-import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -81,6 +80,7 @@ class _Try:
 
     assignment: Assignment | tuple[str, str]
     submission: str
+    content: bytes | None
     student: str
     secret: str
     language: str
@@ -139,16 +139,23 @@ def check_assignment(
             wrong.setdefault((fault.fields["question"], fault.fields["part"]), f"{fault}".split(": ", 1)[1])
     mistakes = list(wrong.values())
     sound = tuple(each.name for each in work.questions if each.name not in {name for name, _ in wrong})
-    with tempfile.TemporaryDirectory(prefix="radiokit-") as folder:
-        blanks, solved = [], []
-        for language in LANGUAGES:
-            blank = Path(folder, f"blank-{language}.py")
-            blank.write_text(script(student_cells(work, language)), encoding="utf-8")
-            blanks.append(_Try(text or work, str(blank), names[0], secret, language, sound))
-        for number, name in enumerate(names if solution is not None else ()):
-            language = LANGUAGES[number % len(LANGUAGES)]
-            solved.append(_Try(text or work, str(solution), name, secret, language, sound))
-        grades = list(_graded([*blanks, *solved] if sound else [], workers if text else 1, progress))
+    blanks = [
+        _Try(
+            text or work,
+            "blank.py",
+            script(student_cells(work, language)).encode(),
+            names[0],
+            secret,
+            language,
+            sound,
+        )
+        for language in LANGUAGES
+    ]
+    solved = []
+    for number, name in enumerate(names if solution is not None else ()):
+        language = LANGUAGES[number % len(LANGUAGES)]
+        solved.append(_Try(text or work, str(solution), None, name, secret, language, sound))
+    grades = list(_graded([*blanks, *solved] if sound else [], workers if text else 1, progress))
     for given in grades[: len(blanks)]:
         for question, part in _parts(given):
             if part.score > 0:
@@ -188,6 +195,7 @@ def _grade(one: _Try) -> Grade:
     return grade(
         of if isinstance(of, Assignment) else assignment_from_source(*of),
         one.submission,
+        content=one.content,
         student=one.student,
         secret=one.secret,
         language=one.language,

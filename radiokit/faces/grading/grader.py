@@ -49,6 +49,7 @@ def grade(
     assignment: str | Path | Assignment,
     submission: str | Path,
     *,
+    content: bytes | None = None,
     student: str = "",
     secret: str = "",
     language: str = "en",
@@ -67,6 +68,8 @@ def grade(
         A name among ``list_assignments()``, or a file of your own.
     submission : str or Path
         A script or a notebook.
+    content : bytes, optional
+        What it holds, where it is no file: then ``submission`` is its name alone.
     student : str
         Who; each student has inputs of his own.
     secret : str
@@ -109,7 +112,7 @@ def grade(
         questions=(),
         complete=False,
     )
-    with Sandbox(submission, limits=work.limits) as sandbox:
+    with Sandbox(submission, content=content, limits=work.limits) as sandbox:
         loaded = sandbox.load()
         names = list(loaded.facts.get("names", ())) if loaded.ok else []
         problems = _problems(loaded, language)

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import multiprocessing
-import os
-import signal
-import tempfile
 import threading
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
 from radiokit.faces.grading.assignment import Assignment, assignment_from_source
 from radiokit.faces.grading.classroom.fingerprint import code_digest
@@ -20,6 +16,7 @@ from radiokit.faces.grading.classroom.reasons import reason
 from radiokit.faces.grading.formats.writing import json_text, write_file
 from radiokit.faces.grading.grader import grade
 from radiokit.faces.grading.grades import Grade
+from radiokit.faces.grading.isolation.interrupts import held
 from radiokit.faces.grading.isolation.limits import Limits
 from radiokit.faces.grading.isolation.protocol import plain_text
 from radiokit.faces.grading.record import continued, record
@@ -95,25 +92,20 @@ def perform(task: Task) -> Done:
     order = task.order
     if order.code != code_digest():
         raise RadiokitError("a worker has another radiokit than this one: install the same everywhere")
-    folder = ""
-    with ONE_AT_A_TIME, _ending_cleanly():
+    with ONE_AT_A_TIME, held():
         try:
-            with tempfile.TemporaryDirectory(prefix="radiokit-") as folder:
-                file = Path(folder, f"submission{task.suffix}")
-                file.write_bytes(task.content)
-                found = grade(
-                    assignment_of(order),
-                    file,
-                    student=task.student,
-                    secret=order.secret,
-                    language=order.language,
-                    earlier=continued(Path(task.journal), task.mark) if task.journal else None,
-                    keep=(lambda grade: _keep(task, grade)) if task.journal else None,
-                )
+            found = grade(
+                assignment_of(order),
+                f"submission{task.suffix}",
+                content=task.content,
+                student=task.student,
+                secret=order.secret,
+                language=order.language,
+                earlier=continued(Path(task.journal), task.mark) if task.journal else None,
+                keep=(lambda grade: _keep(task, grade)) if task.journal else None,
+            )
         except Exception as error:
-            told = f"{type(error).__name__}: {error}"
-            told = plain_text(told.replace(folder, "") if folder else told)
-            return failed(order, task.student, "failed", error=told)
+            return failed(order, task.student, "failed", error=plain_text(f"{type(error).__name__}: {error}"))
     return Done(found.to_json(), dict(found.seconds), dict(found.measured))
 
 
@@ -130,27 +122,3 @@ def _keep(task: Task, grade: Grade) -> None:
     if not grade.complete:
         with suppress(RadiokitError):  # then more is graded again, should this run be stopped
             write_file(Path(task.journal), json_text(record(grade, task.mark)))
-
-
-class _EndedError(BaseException):
-    """Raised where a worker is told to end."""
-
-
-@contextmanager
-def _ending_cleanly() -> Iterator[None]:
-    """Where this is a worker's main thread, let SIGTERM first close the sandbox and remove its files."""
-    if multiprocessing.parent_process() is None or threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGTERM, _end)
-    try:
-        yield
-    except _EndedError:
-        os._exit(128 + signal.SIGTERM)
-    finally:
-        signal.signal(signal.SIGTERM, before)
-
-
-def _end(signum: int, frame: object) -> NoReturn:
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # the pool says so again when the first worker has gone
-    raise _EndedError

@@ -15,20 +15,21 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 import radiokit
+from radiokit.faces.grading.isolation.interrupts import let_in
 from radiokit.faces.grading.isolation.limits import PROTECTIONS, Limits
 from radiokit.faces.grading.isolation.protocol import Array, Assembler, MalformedError, plain_text
 from radiokit.faces.grading.isolation.result import steady
 from radiokit.facts.errors import ParameterError, RadiokitError
 
-__all__ = ["ChildProcess", "LateError", "StoppedError", "carried", "started"]
+__all__ = ["ChildProcess", "Files", "LateError", "StoppedError", "carried", "started"]
 
 HERE = Path(__file__).resolve().parent
 PROGRAMS = ("child", "sources", "imports", "protocol", "loading", "answers", "signature")
@@ -37,6 +38,8 @@ STARTUP = 30.0
 """How long Python may take to start [s]."""
 KEPT = 2000
 """How many characters of what is printed are kept."""
+Files: TypeAlias = Mapping[str, str | bytes]
+"""Paths, or contents, by name."""
 SYSTEM = (
     *("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/nix/store", "/gnu/store", "/etc/ld.so.cache"),
     "/etc/fonts",
@@ -59,24 +62,26 @@ class ChildProcess:
     ----------
     limits : Limits
     files : dict
-        What the submission's folder holds: paths by name.
+        What the submission's folder holds: paths, or contents, by name.
     namespaces : bool
         Whether Linux namespaces are asked for; the child does not start where they are not granted.
     """
 
-    def __init__(self, limits: Limits, files: dict[str, str], *, namespaces: bool) -> None:
+    def __init__(self, limits: Limits, files: Files, *, namespaces: bool) -> None:
         self.protections: tuple[str, ...] = ()
         self._limits = limits
         self._output = bytearray()
         self._printed = 0
         self.folder = os.path.realpath(tempfile.mkdtemp(prefix="radiokit-"))
-        Path(self.folder).chmod(0o755)
-        for name in (*PROGRAMS, *LAUNCHING):  # compiled once, as a class has many submissions
-            Path(self.folder, f"{name}.pyc").write_bytes(_compiled(name))
-        self._results, results = os.pipe()
+        try:
+            paths = _written(Path(self.folder), files)
+            self._results, results = os.pipe()
+        except BaseException:
+            _remove(self.folder)
+            raise
         try:
             self._process = process = subprocess.Popen(
-                _command(self.folder, limits, files, results, namespaces),
+                _command(self.folder, limits, paths, results, namespaces),
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,  # what is printed keeps its order
@@ -122,7 +127,9 @@ class ChildProcess:
                 remaining = deadline - time.monotonic()
                 if remaining <= 0:
                     raise LateError(f"took longer than {seconds:g} s")
-                for key, _ in selector.select(remaining):
+                with let_in():
+                    ready = selector.select(remaining)
+                for key, _ in ready:
                     if key.fd == self._requests:
                         try:
                             left = left[os.write(key.fd, left) :]
@@ -196,7 +203,7 @@ class ChildProcess:
         return f"ended its process with exit code {code}"
 
 
-def started(limits: Limits, files: dict[str, str], levels: list[bool]) -> ChildProcess:
+def started(limits: Limits, files: Files, levels: list[bool]) -> ChildProcess:
     """Return a child behind the highest walls that can be built; its ``protections`` say which.
 
     ``levels`` are to be tried in turn, whether namespaces are asked for; one that fails is taken out.
@@ -232,6 +239,19 @@ def carried(given: npt.ArrayLike) -> Array:
     if kind is None or (array.dtype.kind == "u" and array.size and array.max() > np.iinfo("i8").max):
         raise ParameterError("arrays", array.dtype, "numbers of at most 64 bits")
     return array.astype("<f4" if array.dtype == np.float32 else kind)
+
+
+def _written(folder: Path, files: Files) -> dict[str, str]:
+    """Write the programs, and the files that are none yet; return the files' paths by name."""
+    folder.chmod(0o755)
+    for name in (*PROGRAMS, *LAUNCHING):  # compiled once, as a class has many submissions
+        Path(folder, f"{name}.pyc").write_bytes(_compiled(name))
+    paths = {}
+    for number, (name, given) in enumerate(files.items()):
+        paths[name] = given if isinstance(given, str) else str(folder / f"{number}.file")
+        if isinstance(given, bytes):
+            Path(paths[name]).write_bytes(given)
+    return paths
 
 
 @functools.cache

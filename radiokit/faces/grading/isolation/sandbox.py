@@ -7,7 +7,7 @@ import secrets
 import sys
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import TracebackType
@@ -15,6 +15,7 @@ from typing import Any, Literal
 
 import numpy.typing as npt
 
+from radiokit.faces.grading.isolation.interrupts import held
 from radiokit.faces.grading.isolation.limits import Limits
 from radiokit.faces.grading.isolation.process import ChildProcess, LateError, StoppedError, carried, started
 from radiokit.faces.grading.isolation.protocol import ARRAYS, Array, MalformedError, pack
@@ -53,6 +54,8 @@ class Sandbox:
     ----------
     path : str or Path
         The submission, a Python file or a Jupyter notebook.
+    content : bytes, optional
+        What it holds, where it is no file: then ``path`` is its name alone.
     limits : Limits, optional
     files : sequence of str or Path, optional
         Further files for the submission's folder.
@@ -80,6 +83,7 @@ class Sandbox:
         self,
         path: str | Path,
         *,
+        content: bytes | None = None,
         limits: Limits | None = None,
         files: Sequence[str | Path] = (),
         namespaces: bool = True,
@@ -87,14 +91,15 @@ class Sandbox:
         if os.name != "posix":
             raise RadiokitError("isolation needs a POSIX system: run it in WSL or a container")
         self.limits = limits or Limits()
-        self._files = {Path(file).name: str(Path(file).resolve()) for file in (*files, path)}
         self._name = Path(path).name
-        for file in self._files.values():
-            if not Path(file).is_file():
-                raise RadiokitError(f"no such file: {file}")
-            if Path(file).stat().st_size > LARGEST:
-                raise RadiokitError(f"{file} has more than {LARGEST} bytes")
+        given = files if content is not None else (*files, path)
+        self._files: dict[str, str | bytes] = {Path(file).name: _checked(Path(file)) for file in given}
+        if content is not None:
+            if len(content) > LARGEST:
+                raise RadiokitError(f"{self._name} has more than {LARGEST} bytes")
+            self._files[self._name] = content
         self._levels = [True, False] if namespaces and sys.platform == "linux" else [False]
+        self._held = ExitStack()
         self._child: ChildProcess | None = None
         self._protections: tuple[str, ...] = ()
         self._loaded: Result | None = None
@@ -103,12 +108,15 @@ class Sandbox:
         self._end = self._output = ""
 
     def __enter__(self) -> Sandbox:
+        """Hold interrupts from here on; they are let in while a child is waited for."""
+        self._held.enter_context(held())
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self.close()
+        with self._held:
+            self.close()
 
     def load(self, timeout: float | None = None) -> Result:
         """Start a child and load the submission, if that is still to be done.
@@ -232,10 +240,11 @@ class Sandbox:
     def close(self) -> None:
         """End the child and all its descendants, and remove what it wrote."""
         self._branched = False
-        child, self._child = self._child, None
-        if child is not None:
-            self._output = child.printed()
-            child.close()
+        with held():
+            child, self._child = self._child, None
+            if child is not None:
+                self._output = child.printed()
+                child.close()
 
     def _called(self, request: dict[str, Any], arrays: Sequence[Array], timeout: float | None) -> Result:
         began = time.monotonic()
@@ -284,7 +293,8 @@ class Sandbox:
         began = time.monotonic()
         found: dict[str, Any] = {}
         try:
-            child = self._child = self._child or self._started()
+            with held():
+                child = self._child = self._child or self._started()
             token = token or secrets.token_hex(8)
             asked = pack({"id": token, "file": self._name, **request}, arrays)
             header, values = child.exchange(asked, seconds)
@@ -311,3 +321,13 @@ class Sandbox:
         child = started(self.limits, self._files, self._levels)
         self._protections = child.protections
         return child
+
+
+def _checked(file: Path) -> str:
+    """Return the path of a file that can be handed to a child."""
+    path = file.resolve()
+    if not path.is_file():
+        raise RadiokitError(f"no such file: {path}")
+    if path.stat().st_size > LARGEST:
+        raise RadiokitError(f"{path} has more than {LARGEST} bytes")
+    return str(path)

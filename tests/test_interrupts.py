@@ -1,0 +1,163 @@
+"""Interrupts: wherever a signal comes, a sandbox is ended and nothing is left of it."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import tempfile
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+import numpy as np
+import pytest
+
+from classroom import left_of, wait_until
+from radiokit.faces.grading.isolation.interrupts import held, let_in
+from radiokit.faces.grading.isolation.sandbox import Sandbox
+
+DOUBLE = b"def double(x): return 2 * x"
+
+
+@pytest.fixture
+def received(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """The signals that got through to handlers, which raise nothing."""
+    numbers: list[int] = []
+    before = {each: signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)}
+    for each in before:
+        signal.signal(each, lambda number, frame: numbers.append(number))
+    yield numbers
+    for each, handler in before.items():
+        signal.signal(each, handler)
+
+
+def test_what_is_held_comes_at_the_end_in_its_order(received: list[int]) -> None:
+    with held():
+        signal.raise_signal(signal.SIGTERM)
+        with held():
+            signal.raise_signal(signal.SIGINT)
+        assert received == []
+    assert received == [signal.SIGTERM, signal.SIGINT]
+    signal.raise_signal(signal.SIGINT)
+    assert len(received) == 3
+
+
+def test_what_is_let_in_comes_at_once(received: list[int]) -> None:
+    with held():
+        signal.raise_signal(signal.SIGINT)
+        with let_in():
+            assert received == [signal.SIGINT]
+            signal.raise_signal(signal.SIGTERM)
+            assert received == [signal.SIGINT, signal.SIGTERM]
+        signal.raise_signal(signal.SIGTERM)
+        assert len(received) == 2
+    assert len(received) == 3
+    with let_in():
+        signal.raise_signal(signal.SIGINT)
+    assert len(received) == 4
+
+
+def test_after_an_interrupt_was_let_in_the_rest_is_cleared_up_undisturbed() -> None:
+    done = []
+    with pytest.raises(KeyboardInterrupt), held():
+        try:
+            with let_in():
+                signal.raise_signal(signal.SIGINT)
+                done.append("not this")
+        finally:
+            signal.raise_signal(signal.SIGINT)
+            with let_in():
+                done.append("cleared up")
+    assert done == ["cleared up"]
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="forks")
+@pytest.mark.parametrize("waits", [False, True])
+def test_what_ends_a_process_does_so_when_it_has_cleared_up(waits: bool, tmp_path: Path) -> None:
+    pid = os.fork()
+    if pid == 0:
+        try:
+            with held():
+                try:
+                    if waits:
+                        with let_in():
+                            signal.raise_signal(signal.SIGTERM)
+                    signal.raise_signal(signal.SIGTERM)
+                    (tmp_path / "went on").touch()
+                finally:
+                    (tmp_path / "cleared up").touch()
+        finally:
+            os._exit(0)
+    _, status = os.waitpid(pid, 0)
+    assert os.waitstatus_to_exitcode(status) == -signal.SIGTERM
+    assert (tmp_path / "cleared up").exists()
+    assert (tmp_path / "went on").exists() is not waits
+
+
+def test_ignored_signals_stay_ignored_and_other_threads_change_nothing() -> None:
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        with held():
+            assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGINT, before)
+    found: list[Any] = []
+
+    def look() -> None:
+        with held(), let_in():
+            found.append(signal.getsignal(signal.SIGINT))
+
+    thread = threading.Thread(target=look)
+    thread.start()
+    thread.join()
+    assert found == [before]
+
+
+def _work() -> None:
+    with Sandbox("theirs.py", content=DOUBLE) as sandbox:
+        assert sandbox.call("double", np.ones(3)).values[0].tolist() == [2, 2, 2]
+
+
+def _lines(work: Callable[[], None], interrupted: int) -> int:
+    """Run some work, with an interrupt before one of the lines of the sandbox, and count these."""
+    count = 0
+
+    def trace(frame: FrameType, event: str, argument: object) -> Any:
+        nonlocal count
+        if f"{os.sep}isolation{os.sep}" not in frame.f_code.co_filename:
+            return None
+        if event == "line" and not frame.f_code.co_filename.endswith("interrupts.py"):
+            count += 1
+            if count == interrupted:
+                sys.settrace(None)
+                signal.raise_signal(signal.SIGINT)
+        return trace
+
+    before = sys.gettrace()
+    sys.settrace(trace)
+    try:
+        work()
+    finally:
+        sys.settrace(before)
+    return count
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
+def test_an_interrupt_before_any_line_of_the_sandbox_leaves_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    _work()  # which levels of walls there are is asked anew, but the programs are compiled once
+    lines = _lines(_work, 0)
+    assert lines > 100
+    assert not list(tmp_path.iterdir())
+    for line in (1 + rng.permutation(lines)[:12]).tolist():
+        with pytest.raises(KeyboardInterrupt):
+            _lines(_work, line)
+        wait_until(lambda: not left_of(-1, tmp_path))
+        assert not list(tmp_path.iterdir()), f"before line {line} of {lines}"
