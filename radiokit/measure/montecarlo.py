@@ -20,8 +20,6 @@ from radiokit.measure.moments import Moments
 
 __all__ = ["ENDLESS", "BlockDraw", "Draw", "block_generator", "but", "mean", "seed_from"]
 
-FloatArray = npt.NDArray[np.float64]
-
 Draw = Callable[[np.random.Generator, int], npt.ArrayLike]
 """``draw(generator, n)`` returns n independent values ``(n,)``, or ``(n, K)``, whose mean is wanted."""
 

@@ -31,8 +31,6 @@ Triple = tuple[float, float, float]
 
 _HALF = Lambert(reflectance=0.5)
 _DIFFUSE = "A diffuse surface of reflectance 0.5, seen along its normal, "
-_MISSED = " Samples of the material hardly ever meet so small a light."
-_UNMISSED = " Samples of the material all but never miss so large a light."
 _SKY = Constant(radiance=1.0, normal=(0.0, 0.0, 1.0))
 _SUN = Sphere(center=(0.0, 0.0, 4.0), radius=1.0, radiance=1.0)
 _SQUARE = Rectangle(center=(0.0, 0.0, 1.0), normal=(0.0, 0.0, -1.0), width=2.0, height=2.0)

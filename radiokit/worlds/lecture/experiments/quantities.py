@@ -31,7 +31,7 @@ __all__ = [
     "total_flux",
 ]
 
-_DOWN, _UP = (0.0, 0.0, -1.0), (0.0, 0.0, 1.0)
+_DOWN = (0.0, 0.0, -1.0)
 
 
 def calorimeter(losses: float, absorptance: float = 1.0) -> Verdict:
