@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Iterable
+from numbers import Real
 from typing import Any
 
 from radiokit.checks.energy import energy
@@ -93,7 +94,7 @@ def check(
     for law in chosen:
         if law not in LAWS:
             raise UnknownNameError("law", law, LAWS)
-    if not seconds > 0:
+    if not isinstance(seconds, Real) or not seconds > 0:
         raise ParameterError("seconds", seconds, "greater than 0")
     if evaluations is not None and not (isinstance(evaluations, int) and evaluations >= _FEWEST):
         raise ParameterError("evaluations", evaluations, f"an integer of at least {_FEWEST}, or None")

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from radiokit.facts.checking import check_integration
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.converge import GK21, Integrand, RuleSum, adaptive, apply_rule, converge
@@ -49,7 +50,8 @@ def box(
     Raises
     ------
     ParameterError
-        When ``high`` is below ``low`` or not finite.
+        When ``high`` is below ``low`` or not finite, the integrand is not callable, or a tolerance is
+        negative.
     NonFiniteError
         When the integrand is NaN or infinite somewhere.
 
@@ -58,6 +60,7 @@ def box(
     4.5
     """
     start = time.perf_counter()
+    check_integration(integrand, rtol=rtol, atol=atol)
     low, high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
     span = high - low
     if not (np.all(np.isfinite(span)) and np.all(span >= 0)):

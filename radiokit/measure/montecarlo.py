@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from radiokit.facts.checking import check_above_zero
 from radiokit.facts.errors import CallableError, NonFiniteError, ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.moments import Moments
@@ -142,9 +143,7 @@ def mean(
         if not (type(count) is int or isinstance(count, np.integer)) or count < least:
             raise ParameterError(name, count, f"an integer, at least {least}")
     assert most is not None
-    for name, limit in (("rtol", rtol), ("seconds", seconds)):
-        if limit is not None and not limit > 0:
-            raise ParameterError(name, limit, "above 0, or None")
+    check_above_zero(rtol=rtol, seconds=seconds)
     start = time.perf_counter()
     halvings = _halvings(block) if isinstance(draw, BlockDraw) and rtol is not None else 0
     blocks = _blocks(most, block, halvings)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from html import escape
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -148,7 +149,7 @@ def find_terms(
     """Check the arguments of ``shade`` and return the material's name and the terms."""
     if method not in METHODS:
         raise UnknownNameError("method", method, METHODS)
-    if not 0 < rtol < 1:
+    if not isinstance(rtol, Real) or not 0 < rtol < 1:
         raise ParameterError("rtol", rtol, "in (0, 1)")
     model = as_bsdf(f)
     receiver = Receiver(normal, position)

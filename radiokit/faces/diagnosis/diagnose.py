@@ -96,7 +96,7 @@ def diagnose(
     """
     if language not in LANGUAGES:
         raise ParameterError("language", language, " or ".join(map(repr, LANGUAGES)))
-    problem = read(answer, reference, inputs or {}, variants, error, rtol)
+    problem = read(answer, reference, {} if inputs is None else inputs, variants, error, rtol)
     text = TEXTS[language]
     entries = (*catalogue, *_variant_entries(variants, catalogue))
     seen, _ = _fits(problem, [entry for entry in entries if entry.seen], -1.0)
