@@ -71,7 +71,7 @@ def check_above_zero(**limits: Any) -> None:
     radiokit.facts.errors.ParameterError: rtol = 0 is not allowed: it must be above 0, or None
     """
     for name, limit in limits.items():
-        if limit is not None and not (isinstance(limit, Real) and limit > 0):
+        if limit is not None and not (isinstance(limit, Real) and float(limit) > 0):
             raise ParameterError(name, limit, "above 0, or None")
 
 
@@ -87,5 +87,5 @@ def check_integration(integrand: Any, **tolerances: Any) -> None:
     if not callable(integrand):
         raise ParameterError("integrand", short(integrand), "a function of an array of points")
     for name, tolerance in tolerances.items():
-        if not (isinstance(tolerance, Real) and tolerance >= 0):
+        if not (isinstance(tolerance, Real) and float(tolerance) >= 0):
             raise ParameterError(name, tolerance, "a number at least 0")

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.facts.checking import check_integration
+from radiokit.facts.checking import check_integration, numbers
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.converge import GK21, Integrand, RuleSum, adaptive, apply_rule, converge
@@ -61,7 +61,7 @@ def box(
     """
     start = time.perf_counter()
     check_integration(integrand, rtol=rtol, atol=atol)
-    low, high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
+    low, high = numbers("low", low, "two finite numbers"), numbers("high", high, "two finite numbers")
     span = high - low
     if not (np.all(np.isfinite(span)) and np.all(span >= 0)):
         raise ParameterError("high", high.tolist(), f"finite and not below low = {low.tolist()}")

@@ -138,6 +138,8 @@ def mean(
     >>> estimate.covers(0.5, level=0.9999), estimate.evaluations
     (True, 100000)
     """
+    if not (callable(draw) or isinstance(draw, BlockDraw)):
+        raise ParameterError("draw", draw, "a function draw(generator, n), or a BlockDraw")
     most = ENDLESS if samples is None and seconds is not None else samples
     for name, count, least in (("samples", most, 2), ("block", block, 1)):
         if not (type(count) is int or isinstance(count, np.integer)) or count < least:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from radiokit.facts.checking import check_integration
+from radiokit.facts.checking import check_above_zero, check_integration, vectors
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.box import bent, box
@@ -114,7 +114,8 @@ def hemisphere(
     Raises
     ------
     ParameterError
-        When ``wo`` is not above the horizon, the integrand is not callable, or a tolerance is negative.
+        When ``wo`` is not above the horizon, the integrand is not callable, ``width`` is not above 0, or a
+        tolerance is negative.
     NonFiniteError
         When the integrand is NaN or infinite somewhere.
 
@@ -124,9 +125,11 @@ def hemisphere(
     """
     start = time.perf_counter()
     check_integration(integrand, rtol=rtol, atol=atol)
-    wo = np.asarray(wo, dtype=float)
-    if wo.shape != (3,) or not (np.all(np.isfinite(wo)) and wo[2] > 0):
-        raise ParameterError("wo", wo.tolist(), "a direction of shape (3,) above the horizon (z > 0)")
+    check_above_zero(width=width)
+    above = "a direction of shape (3,) above the horizon (z > 0)"
+    wo = vectors("wo", wo, above)
+    if wo.ndim > 1 or not (np.all(np.isfinite(wo)) and wo[2] > 0):
+        raise ParameterError("wo", wo.tolist(), above)
     spent = 0
     if width is not None:
         core = width

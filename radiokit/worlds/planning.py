@@ -154,7 +154,8 @@ def find_terms(
     model = as_bsdf(f)
     receiver = Receiver(normal, position)
     local = receiver.to_local(receiver.axis if wo is None else check_direction("wo", wo))
-    lights: Sequence[Any] = [emitters] if isinstance(emitters, Emitter) else list(emitters)
+    several = isinstance(emitters, Iterable) and not isinstance(emitters, Emitter)
+    lights: Sequence[Any] = list(emitters) if several else [emitters]
     terms: list[Term] = []
     for light in map(check_emitter, lights):
         parts = (DELTA_LIGHT,) if light.delta else (DELTA_LOBES, SMOOTH)

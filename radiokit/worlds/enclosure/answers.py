@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from radiokit.contracts.vectors import as_point
-from radiokit.facts.checking import reject
+from radiokit.facts.checking import check_above_zero, reject
 from radiokit.facts.directions import check_directions, dot
 from radiokit.facts.errors import ParameterError, RadiokitError, UnknownNameError
 from radiokit.facts.estimate import Estimate
@@ -227,6 +227,7 @@ def _answer(
     """Return the answer in closed form or by following paths."""
     if effort.method not in METHODS:
         raise UnknownNameError("method", effort.method, METHODS)
+    check_above_zero(rtol=effort.rtol, seconds=effort.seconds)
     start = time.perf_counter()
     if all(wall.absorbs_nothing for wall in room.parts):
         allowed = "with a wall that absorbs: with an albedo of 1 the radiance in a closed room diverges"
