@@ -89,6 +89,10 @@ class Verdict:
     estimate : Estimate, optional
         The number that was compared with ``limit``.
     limit, p_value : float, optional
+    evaluations : int
+        How often the model was evaluated for it.
+    seconds : float
+        What it took [s].
     details : mapping
         Resolution of the search, and whatever else a program may want.
 

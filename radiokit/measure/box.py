@@ -43,6 +43,12 @@ def box(
     ----------
     integrand : callable
         Takes points (N, 2), returns (N,) or (N, K).
+    low, high : array_like, shape (2,)
+        Opposite corners, no coordinate of ``high`` below that of ``low``.
+    rtol, atol : float
+        The error may be ``max(atol, rtol |value|)``.
+    max_evaluations : int
+        A budget. The estimate says ``converged=False`` when it did not suffice.
     kinks : bool
         Whether kinks are known to be inside. Product rules, which then converge slowly and agree by chance,
         are left out.

@@ -179,9 +179,15 @@ def solid_angle(
     position: npt.ArrayLike = (0.0, 0.0, 0.0),
     occluders: Occluder | Iterable[Occluder] = (),
 ) -> Estimate:
-    """Return the solid angle [sr] of an emitter from ``position`` (3,) [m]; 0 for a delta light.
+    """Return the solid angle [sr] of an emitter; 0 for a delta light.
 
-    With ``occluders``, that of what is seen of it behind them.
+    Parameters
+    ----------
+    emitter : Emitter
+    position : array_like, shape (3,)
+        Where it is seen from [m].
+    occluders : Occluder or iterable of Occluder
+        Only what is seen of the emitter behind them counts.
 
     Raises
     ------

@@ -134,7 +134,20 @@ def irradiance(
 ) -> Estimate:
     """Return the irradiance [W m⁻²] of a point of a wall, from the lamps and from all other walls.
 
-    Parameters and errors are those of ``radiance``.
+    Parameters
+    ----------
+    room : Sphere or Box
+    position : array_like, shape (3,) or (N, 3)
+        Of the points [m], on the room's wall.
+    method, samples, rtol, seconds, rng, executor
+        As for ``radiance``.
+
+    Raises
+    ------
+    ParameterError
+        When a point is not on the wall, or another argument is out of its range.
+    UnknownNameError
+        When there is no such method.
 
     >>> from radiokit.bsdfs.lambert import Lambert
     >>> from radiokit.worlds.enclosure import Box, Wall
@@ -167,7 +180,14 @@ def flux(
     part : int
         0 for a sphere's wall and k for its k-th cap; 0 to 5 for the faces of a box at −x, +x, −y, +y, −z, +z.
     method, samples, rtol, seconds, rng, executor
-        As for ``radiance``, whose errors are raised here too.
+        As for ``radiance``.
+
+    Raises
+    ------
+    ParameterError
+        When there is no such part, or another argument is out of its range.
+    UnknownNameError
+        When there is no such method.
 
     >>> from radiokit.bsdfs.lambert import Lambert
     >>> from radiokit.worlds.enclosure import Cap, Sphere, Wall
