@@ -259,7 +259,7 @@ def bsdf(name: str, **parameters: Any) -> BSDF:
     name : str
         One of ``list_bsdfs()``.
     **parameters
-        Those of its class, such as ``alpha=0.3``: ``help(type(bsdf(...)))`` gives range, unit and meaning.
+        Those of its class, such as ``alpha=0.3``; the help of its class gives their ranges and units.
 
     Raises
     ------

@@ -140,7 +140,7 @@ def emitter(name: str, **parameters: Any) -> Emitter:
     name : str
         One of ``list_emitters()``.
     **parameters
-        Those of its class, such as ``radiance=1.0``: ``help(type(emitter(...)))`` gives range, unit and meaning.
+        Those of its class, such as ``radiance=1.0``; the help of its class gives their ranges and units.
 
     Raises
     ------

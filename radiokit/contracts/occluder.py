@@ -108,7 +108,7 @@ def occluder(name: str, **parameters: Any) -> Occluder:
     name : str
         One of ``list_occluders()``.
     **parameters
-        Those of its class, such as ``radius=1.0``: ``help(type(occluder(...)))`` gives range, unit and meaning.
+        Those of its class, such as ``radius=1.0``; the help of its class gives their ranges and units.
 
     Raises
     ------

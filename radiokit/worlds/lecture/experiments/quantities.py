@@ -10,6 +10,7 @@ from radiokit.contracts.emitter import emitter
 from radiokit.facts.errors import QuantityKindError
 from radiokit.facts.quantities import Q, quantity
 from radiokit.facts.verdict import Verdict
+from radiokit.physics import planck
 from radiokit.worlds.lecture.deciding import found
 from radiokit.worlds.scene import irradiance, solid_angle
 
@@ -188,10 +189,9 @@ def observer() -> tuple[Verdict, ...]:
 
 def platinum() -> Verdict:
     """The luminance of a black body at the freezing point of platinum, once the candela's standard."""
-    wavelength = np.linspace(380e-9, 780e-9, 2001)
-    first, second = 2 * 6.62607015e-34 * 299_792_458.0**2, 1.438776877e-2  # 2hc² [W m²], hc/k [m K]
-    radiance = first / wavelength**5 / np.expm1(second / (wavelength * 2041.4))
-    luminance = 683 * float(np.trapezoid(_efficiency(1e9 * wavelength) * radiance, wavelength))
+    nm = np.linspace(380.0, 780.0, 2001)
+    radiance = planck.spectral_radiance(wavelength_nm=nm, temperature=2041.4)
+    luminance = 683 * float(np.trapezoid(_efficiency(nm) * radiance, nm))
     message = f"1 cm² of a black body at 2041.4 K has {1e-4 * luminance:.1f} cd; 60 made the standard"
     return found("60 cd/cm²", 1e-4 * luminance, 60.0, 1.0, message)
 
