@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import inspect
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -45,6 +46,7 @@ WRONG: tuple[tuple[Callable[[], Any], str], ...] = (
     (lambda: rk.enclosure.Box(walls=rk.enclosure.Wall(), lights=3), "lights = 3 .* point lights"),
     (lambda: rk.enclosure.Sphere(wall=rk.enclosure.Wall(), radius="wide"), "radius = 'wide' .* a number"),
     (lambda: rk.enclosure.irradiance(ROOM, position=(0, 0.5, 0.5), rtol=-1), "rtol = -1 .* above 0"),
+    (lambda: rk.irradiance(SKY, rtol="fine"), r"rtol = 'fine' .* \(0, 1\)"),
     (lambda: rk.lecture_claims(slide=1.5), "slide = 1.5 .* from 1 to 50"),
     (lambda: rk.montecarlo.mean(3, samples=10), "draw = 3 .* a function"),
     (lambda: rk.montecarlo.mean(uniform, samples=10, rtol="fine"), "rtol = 'fine' .* above 0"),
@@ -87,3 +89,20 @@ def test_one_name_may_stand_for_several() -> None:
 
 def test_a_verdict_knows_its_outcome_by_its_text() -> None:
     assert verdict().ok
+
+
+def signatures() -> Iterator[tuple[str, str]]:
+    for name in dir(rk):
+        found = getattr(rk, name)
+        names = getattr(found, "__all__", ()) if inspect.ismodule(found) else ()
+        for each, value in ((name, found), *((f"{name}.{inner}", getattr(found, inner)) for inner in names)):
+            if inspect.isfunction(value) or (
+                inspect.isclass(value) and value.__module__.startswith("radiokit")
+            ):
+                yield each, str(inspect.signature(value))
+
+
+def test_signatures_can_be_read() -> None:
+    found = dict(signatures())
+    assert len(found) > 100
+    assert {name for name, text in found.items() if len(text) > 1000 or " object at 0x" in text} == set()
