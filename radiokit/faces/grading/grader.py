@@ -98,9 +98,8 @@ def grade(
     """
     work = load_assignment(assignment)
     taken = {name for each in work.questions for name in each.functions}
-    if questions is not None:
-        wanted = {work.question(name).name for name in questions}
-        work = replace(work, questions=tuple(each for each in work.questions if each.name in wanted))
+    wanted = {work.question(name).name for name in questions} if questions is not None else taken
+    asked = [each for each in work.questions if each.name in wanted]
     checked_language(language)
     done = {question.name: question for question in earlier.questions} if earlier is not None else {}
     grades: list[QuestionGrade] = []
@@ -118,9 +117,9 @@ def grade(
         problems = _problems(loaded, language)
         result = replace(result, problems=problems, protections=loaded.protections, missing=loaded.missing)
         seconds, measured = {}, {}
-        for question in work.questions:
+        for question in asked:
             if progress is not None:
-                progress(len(grades), len(work.questions))
+                progress(len(grades), len(asked))
             began = time.monotonic()
             if question.name in done:
                 grades.append(done[question.name])
@@ -137,7 +136,7 @@ def grade(
             result = replace(
                 result,
                 questions=tuple(grades),
-                complete=len(grades) == len(work.questions),
+                complete=len(grades) == len(asked),
                 seconds=seconds,
                 measured=measured,
             )
