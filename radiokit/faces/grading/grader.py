@@ -125,11 +125,14 @@ def grade(
                 grades.append(done[question.name])
             else:
                 others = [name for name in names if name in question.functions or name not in taken]
-                absent = {
-                    name: _absent(sandbox, name, loaded, others, problems, language)
-                    for name in question.functions
-                }
-                found, review, numbers = _judged(sandbox, work, question, absent, student, secret, language)
+                with sandbox.within(question.seconds):  # what hangs costs it once
+                    absent = {
+                        name: _absent(sandbox, name, loaded, others, problems, language)
+                        for name in question.functions
+                    }
+                    found, review, numbers = _judged(
+                        sandbox, work, question, absent, student, secret, language
+                    )
                 measured.update({f"{question.name}.{name}": value for name, value in numbers.items()})
                 grades.append(_graded(question, found, review, language))
             seconds[question.name] = time.monotonic() - began
@@ -154,23 +157,7 @@ def _judged(
     secret: str,
     language: str,
 ) -> tuple[dict[str, Finding], str, dict[str, float]]:
-    """Return the finding of each part, why a person should look, and what was measured.
-
-    The parts share the question's time, so that one that hangs cannot cost it again in the next.
-    """
-    with sandbox.within(question.seconds):
-        return _judged_parts(sandbox, work, question, absent, student, secret, language)
-
-
-def _judged_parts(
-    sandbox: Sandbox,
-    work: Assignment,
-    question: Question,
-    absent: Mapping[str, Finding | None],
-    student: str,
-    secret: str,
-    language: str,
-) -> tuple[dict[str, Finding], str, dict[str, float]]:
+    """Return the finding of each part, why a person should look, and what was measured."""
     found: dict[str, Finding] = {}
     review = ""
     numbers: dict[str, float] = {}
