@@ -10,6 +10,7 @@ import socket
 import struct
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -343,6 +344,19 @@ def test_files_need_no_namespaces(path, tmp_path):
         if "processes" in protections:
             assert not sandbox.call("signals", 1.0).values[0][0]
     assert "files" in protections or not landlocked()
+
+
+@pytest.mark.parametrize("namespaces", [True, False])
+def test_what_is_handed_in_is_nobody_else_s(tmp_path, monkeypatch, namespaces):
+    """Two at once run as two users, and no other user of the machine can look into their folders."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    code = b"import os\ndef user(x): return os.getuid()"
+    one, two = (Sandbox(name, content=code, namespaces=namespaces) for name in ("a.py", "b.py"))
+    with one, two:
+        users = [each.call("user", 1.0) for each in (one, two)]
+        modes = [path.stat().st_mode for path in tmp_path.iterdir()]
+    assert "user" not in users[0].protections or users[0].values != users[1].values
+    assert [mode & 0o7 for mode in modes] == [0, 0]
 
 
 def landlocked():
