@@ -239,9 +239,10 @@ def _main() -> None:
     ours = 2 if spec["namespaces"] else 1  # the launcher, and the first process of the namespaces
 
     def excess() -> int:
-        """Return what the child's processes have too much of, as is seen twice, or 0."""
+        """Slow what runs beside itself; return what of it is too much, as is seen twice, or 0."""
         for _ in range(2):
             pids = descendants.tree(proc, me)[ours:]
+            descendants.slow(proc, pids)
             many = len(pids) > limits["processes"] + SPARE
             if not many and descendants.used(proc, pids, limits["memory_bytes"]) <= limits["memory_bytes"]:
                 return 0
