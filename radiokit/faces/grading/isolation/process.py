@@ -130,17 +130,20 @@ class ChildProcess:
                 with let_in():
                     ready = selector.select(remaining)
                 for key, _ in ready:
-                    if key.fd == self._requests:
-                        try:
-                            left = left[os.write(key.fd, left) :]
-                        except BrokenPipeError:
-                            left = left[len(left) :]
-                        if not left:
-                            selector.unregister(self._requests)
-                        continue
                     results = key.fd == self._results
-                    data = os.read(key.fd, min(whole.wanted, 1 << 20) if results else 1 << 16)
-                    if not results:
+                    try:
+                        if key.fd == self._requests:
+                            left = left[os.write(key.fd, left) :]
+                        else:
+                            data = os.read(key.fd, min(whole.wanted, 1 << 20) if results else 1 << 16)
+                    except BlockingIOError:  # a child of the same user can open its pipes' other ends
+                        continue
+                    except BrokenPipeError:
+                        left = left[len(left) :]
+                    if key.fd == self._requests:
+                        if not left:
+                            selector.unregister(key.fd)
+                    elif not results:
                         self._keep(data)
                         if not data:
                             selector.unregister(key.fd)
