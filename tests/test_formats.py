@@ -446,6 +446,16 @@ def test_text_for_a_terminal():
     assert "\x1b[31m\x00" not in printed
 
 
+def test_no_log_takes_a_line_for_a_command_where_a_note_is_wrapped():
+    from rich.console import Console
+
+    for length in range(20):
+        console = Console(width=60, file=io.StringIO(), force_terminal=True, color_system=None)
+        console.print(to_rich(replace(GRADE, problems=("x " * (20 + length) + "::error::y",))))
+        assert "error" in console.file.getvalue()
+        assert not re.search(r"^\W*::", re.sub(r"\x1b\[\d*m", "", console.file.getvalue()), re.MULTILINE)
+
+
 @pytest.mark.parametrize(
     ("target", "told"),
     [
