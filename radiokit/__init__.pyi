@@ -52,10 +52,10 @@ from .measure.kernels import select as select
 from .measure.twin import Twin as Twin
 from .physics import fresnel as fresnel
 from .physics import integrating_sphere as integrating_sphere
+from .physics import photometry as photometry
+from .physics import planck as planck
 from .physics import relations as relations
 from .physics import view_factor as view_factor
-from .physics.photometry import luminous_efficacy as luminous_efficacy
-from .physics.photometry import luminous_efficiency as luminous_efficiency
 from .physics.relate.request import list_relations as list_relations
 from .physics.relate.request import relate as relate
 from .physics.relations.catalogue import derive as derive

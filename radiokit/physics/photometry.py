@@ -8,14 +8,24 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
+from radiokit.facts.checking import numbers, reject, short
 from radiokit.facts.errors import NonFiniteError, ParameterError
+from radiokit.facts.source import Source
 
-__all__ = ["CANDELA_NM", "Vision", "luminous_efficacy", "luminous_efficiency"]
+__all__ = ["CANDELA_NM", "SOURCE", "Vision", "luminous_efficacy", "luminous_efficiency"]
 
 FloatArray = npt.NDArray[np.float64]
 
 Vision = Literal["photopic", "scotopic"]
 """Of the eye that is adapted to the day, or to the night."""
+
+SOURCE = Source(
+    authors="CIE",
+    year=2020,
+    title="ILV: International Lighting Vocabulary, 2nd edition. CIE S 017/E:2020",
+    doi="10.25039/S017.2020",
+    equation="17-21-035, V(λ); 17-21-090, the efficacy of radiation; 17-21-092, note 2, its maximum",
+)
 
 CANDELA_NM = 555.017
 """The wavelength in air of 540 THz [nm], for which the candela is defined as 683 lm/W."""
@@ -26,7 +36,7 @@ _OBSERVERS = {
 }
 
 
-def luminous_efficiency(wavelength_nm: npt.ArrayLike, *, vision: Vision = "photopic") -> Any:
+def luminous_efficiency(*, wavelength_nm: npt.ArrayLike, vision: Vision = "photopic") -> Any:
     """Return the spectral luminous efficiency V(λ) of the CIE's standard observer, or V'(λ) at night.
 
     It is linear between the whole nanometres of the table, and 0 beyond its ends: 360 to 830 nm by day, 380
@@ -48,21 +58,20 @@ def luminous_efficiency(wavelength_nm: npt.ArrayLike, *, vision: Vision = "photo
     ParameterError
         Naming the argument, its value, and what is allowed.
 
-    Source: CIE e-ILV 17-21-035, spectral luminous efficiency, doi:10.25039/S017.2020; the tables are those
-    of colour-science.
+    Source: CIE S 017 (2020), doi:10.25039/S017.2020, 17-21-035; the tables are those of colour-science.
 
-    >>> luminous_efficiency([555.0, 680.0, 1000.0])
+    >>> luminous_efficiency(wavelength_nm=[555.0, 680.0, 1000.0])
     array([1.   , 0.017, 0.   ])
-    >>> float(luminous_efficiency(507.0, vision="scotopic"))
+    >>> float(luminous_efficiency(wavelength_nm=507.0, vision="scotopic"))
     1.0
     """
     table, values = _table(vision)
-    wavelength = _above_zero("wavelength_nm", np.asarray(wavelength_nm, dtype=np.float64))
-    return np.interp(wavelength, table, values, left=0.0, right=0.0)
+    wavelength = _above_zero(wavelength_nm)
+    return np.interp(wavelength, table, values, left=0.0, right=0.0)[()]
 
 
 def luminous_efficacy(
-    wavelength_nm: npt.ArrayLike, spectrum: npt.ArrayLike, *, vision: Vision = "photopic"
+    *, wavelength_nm: npt.ArrayLike, spectrum: npt.ArrayLike, vision: Vision = "photopic"
 ) -> Any:
     """Return the luminous efficacy of radiation K = K_m ∫ V(λ) X_λ dλ / ∫ X_λ dλ of a spectrum X_λ.
 
@@ -91,26 +100,29 @@ def luminous_efficacy(
     NonFiniteError
         When the spectrum has NaN or infinity.
 
-    Source: CIE e-ILV 17-21-090, luminous efficacy of radiation, and 17-21-092, maximum luminous efficacy,
-    note 2, doi:10.25039/S017.2020.
+    Source: CIE S 017 (2020), doi:10.25039/S017.2020, 17-21-090, and for K_m 17-21-092, note 2.
 
-    >>> round(luminous_efficacy([554.999, 555.001], [1.0, 1.0]), 3)  # nearly one wavelength
-    683.002
-    >>> equal_energy = luminous_efficacy([380.0, 780.0], [1.0, 1.0])
-    >>> round(equal_energy, 2)
+    >>> round(luminous_efficacy(wavelength_nm=[380.0, 780.0], spectrum=[1.0, 1.0]), 2)  # white to physicists
     182.46
+    >>> from radiokit.physics.planck import spectral_radiance
+    >>> nm = np.linspace(200.0, 20_000.0, 19_801)
+    >>> lamp = spectral_radiance(wavelength_nm=nm, temperature=2856.0)
+    >>> round(luminous_efficacy(wavelength_nm=nm, spectrum=lamp), 1)
+    16.5
     """
-    wavelength = _above_zero("wavelength_nm", np.asarray(wavelength_nm, dtype=np.float64))
+    wavelength = _above_zero(wavelength_nm)
     if wavelength.ndim != 1 or len(wavelength) < 2 or not np.all(np.diff(wavelength) > 0):
-        raise ParameterError("wavelength_nm", wavelength_nm, "of shape (M,), M at least 2, and increasing")
-    x = np.asarray(spectrum, dtype=np.float64)
+        raise ParameterError(
+            "wavelength_nm", short(wavelength_nm), "of shape (M,), M at least 2, and increasing"
+        )
+    x = numbers("spectrum", spectrum, "at least 0, and not all 0")
     if x.shape[-1:] != wavelength.shape:
         raise ParameterError("spectrum", x.shape, f"of shape (..., {len(wavelength)})")
     if not np.all(np.isfinite(x)):
         raise NonFiniteError("spectrum has NaN or infinity")
     largest = x.max(axis=-1, keepdims=True)
     if np.any(x < 0) or np.any(largest == 0):
-        raise ParameterError("spectrum", spectrum, "at least 0, and not all 0")
+        raise ParameterError("spectrum", short(spectrum), "at least 0, and not all 0")
     x = x / largest
     table, values = _table(vision)
     nodes = np.union1d(wavelength, table)
@@ -150,7 +162,8 @@ def _between(nodes: FloatArray, wavelength: FloatArray, x: FloatArray) -> FloatA
     return found
 
 
-def _above_zero(name: str, wavelength: FloatArray) -> FloatArray:
-    if not np.all((wavelength > 0) & np.isfinite(wavelength)):
-        raise ParameterError(name, wavelength.tolist(), "finite and above 0")
+def _above_zero(wavelength_nm: npt.ArrayLike) -> FloatArray:
+    allowed = "finite and above 0"
+    wavelength = numbers("wavelength_nm", wavelength_nm, allowed)
+    reject("wavelength_nm", wavelength, np.asarray(~((wavelength > 0) & (wavelength < np.inf))), allowed)
     return wavelength

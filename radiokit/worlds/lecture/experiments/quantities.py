@@ -10,7 +10,7 @@ from radiokit.contracts.emitter import emitter
 from radiokit.facts.errors import QuantityKindError
 from radiokit.facts.quantities import Q, quantity
 from radiokit.facts.verdict import Verdict
-from radiokit.physics.photometry import luminous_efficacy
+from radiokit.physics import photometry, planck
 from radiokit.worlds.lecture.deciding import found
 from radiokit.worlds.scene import irradiance, solid_angle
 
@@ -32,7 +32,7 @@ __all__ = [
     "total_flux",
 ]
 
-_DOWN, _UP = (0.0, 0.0, -1.0), (0.0, 0.0, 1.0)
+_DOWN = (0.0, 0.0, -1.0)
 
 
 def calorimeter(losses: float, absorptance: float = 1.0) -> Verdict:
@@ -180,7 +180,7 @@ def four_pi_lumens() -> Verdict:
 
 def observer() -> tuple[Verdict, ...]:
     """1 W of green and of red as the standard observer weighs them."""
-    green, red = (luminous_efficacy([nm - 1e-3, nm + 1e-3], [1.0, 1.0]) for nm in (555.0, 680.0))
+    green, red = (683 * float(photometry.luminous_efficiency(wavelength_nm=nm)) for nm in (555.0, 680.0))
     return (
         found("1 W of green is 683 lm", green, 683.0, 0.01, f"1 W at 555 nm is {green:.1f} lm"),
         found("of red far less", red < 0.05 * green, True, 0, f"1 W at 680 nm is {red:.1f} lm"),
@@ -189,9 +189,9 @@ def observer() -> tuple[Verdict, ...]:
 
 def platinum() -> Verdict:
     """The luminance of a black body at the freezing point of platinum, once the candela's standard."""
-    wavelength = np.linspace(380e-9, 780e-9, 2001)
-    first, second = 2 * 6.62607015e-34 * 299_792_458.0**2, 1.438776877e-2  # 2hc² [W m²], hc/k [m K]
-    radiance = first / wavelength**5 / np.expm1(second / (wavelength * 2041.4))
-    luminance = luminous_efficacy(1e9 * wavelength, radiance) * float(np.trapezoid(radiance, wavelength))
+    nm = np.linspace(380.0, 780.0, 2001)
+    radiance = planck.spectral_radiance(wavelength_nm=nm, temperature=2041.4)
+    efficacy = photometry.luminous_efficacy(wavelength_nm=nm, spectrum=radiance)
+    luminance = efficacy * float(np.trapezoid(radiance, nm))
     message = f"1 cm² of a black body at 2041.4 K has {1e-4 * luminance:.1f} cd; 60 made the standard"
     return found("60 cd/cm²", 1e-4 * luminance, 60.0, 0.5, message)
