@@ -9,7 +9,7 @@ import numpy as np
 from radiokit.checks.parts import index_squared
 from radiokit.checks.probes import channels, pairs
 from radiokit.contracts.bsdf import BSDF, FloatArray
-from radiokit.facts.directions import dot
+from radiokit.facts.triples import dot
 from radiokit.facts.verdict import Witness
 
 __all__ = ["in_lobe", "lobe_means", "way_back"]
