@@ -25,7 +25,8 @@ __all__ = ["in_step", "invented", "overdrawn", "pretence"]
 TWINS, PAIRED = 5, 64
 """Seeds that are asked for several answers, of which two always agree, and the samples of each.
 
-They count when they are in step three times, each time with other seeds: counts of few hits may be by chance.
+What is in step counts when it is so in each of ``ROUNDS``, with other seeds: random deviations are with
+a chance of 1e-10 in one, those of few hits more often.
 """
 
 STEP, ROUNDED = 1e-5, 2e-7
