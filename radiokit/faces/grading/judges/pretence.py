@@ -45,7 +45,7 @@ FEW, MANY = 3, 256
 ALONE = 1e-3
 """The standard error of one sample, by its value, that is nothing but rounding."""
 
-NEAR, SCATTER = math.log(4.0), 0.005
+NEAR, SCATTER = math.log(4.0), 0.002
 """How far the errors' squares may be from the variance, and the least part of them that chance decides."""
 
 EVEN, ABOUT = math.log(1.4), math.log(2.0)
