@@ -16,7 +16,6 @@ from radiokit.faces.grading.judges.given import check_functions, check_shares, n
 from radiokit.faces.grading.judges.pretence import pretence
 from radiokit.faces.grading.judges.runs import FLOOR, Runs, UnusableError, gather
 from radiokit.faces.grading.judges.runtests import (
-    ROUNDS,
     bias,
     claims,
     each_level,
@@ -25,6 +24,7 @@ from radiokit.faces.grading.judges.runtests import (
     honest,
     rate,
     rate_slip,
+    settled,
     swapped,
 )
 from radiokit.faces.grading.judges.samplewords import line, slip, tell
@@ -51,13 +51,14 @@ class Estimator:
     - ``"efficiency"``: the value is right, and the variance of one sample is at most ``budget``.
 
     Estimators without variance are right, unless ``exact`` is False. A right estimator whose runs are nearly
-    normal is rejected at most once in 1.6e7 gradings; see ``LEVEL`` and ``ROUNDS``.
+    normal is rejected at most once in 1.6e7 gradings; see ``LEVEL``, ``ROUNDS`` and ``MOST``.
 
     What looks right is asked for few samples too, and may then fail or refuse. Noise that was added to a
     known value deviates in one ratio for all seeds, at 64 and 128 samples or, unless ``alike``, at different
     inputs: ``"noise-invented"``. A standard error that is right even for one sample comes of more than were
-    asked for: ``"too-many-samples"``, which ``"error"`` lets pass. Importance, strata, shifted grids,
-    antithetic pairs and control variates do neither, nor do loops, float32 and any way to seed.
+    asked for, of those of a pilot run too: ``"too-many-samples"``, which ``"error"`` lets pass. Importance,
+    strata, shifted grids, antithetic pairs with the error of pairs, and control variates do neither, nor do
+    loops, float32 and any way to seed.
 
     What cannot be told from answers, as some right estimator gives the same:
 
@@ -165,8 +166,8 @@ class Estimator:
         shown: bool,
     ) -> Finding:
         """Judge an estimator: right, or what is wrong with it and why."""
-        failing: set[str] = set()
-        for turn in range(ROUNDS):
+        rounds: list[set[str]] = []
+        while not settled(rounds):
             try:
                 runs = gather(
                     callee,
@@ -181,16 +182,15 @@ class Estimator:
                 )
             except UnusableError as error:
                 return error.finding
-            unsampled = runs.exact and not self.exact
-            frozen = unsampled or (runs.frozen and not runs.exact)
-            if turn == 0:
+            if not rounds:
                 measured = {"seconds_per_sample": runs.seconds}
             with np.errstate(all="ignore"):  # values may be of any size
                 tests = dict(self._tests(runs))
             level = each_level(len(tests))
-            failed = {name for name, p in tests.items() if not p >= level}
-            failing = failed if turn == 0 else failing & failed
-            if not failing and not frozen:
+            rounds.append({name for name, p in tests.items() if not p >= level})
+            if (runs.exact and not self.exact) or (runs.frozen and not runs.exact):
+                rounds[-1].add("frozen")
+            if not rounds[-1]:
                 right, name = self._right(runs, language, measured), ""
                 if not runs.exact:
                     counted = self.aspect != "error"
@@ -203,7 +203,9 @@ class Estimator:
                 share = self.credit.get(name, 0.0)
                 return replace(right, share=share, text=text, diagnosis=name, confidence=1.0)
         with np.errstate(all="ignore"):
-            return self._wrong(runs, failing, language=language, hints=hints, shown=shown, measured=measured)
+            return self._wrong(
+                runs, settled(rounds), language=language, hints=hints, shown=shown, measured=measured
+            )
 
     def _tests(self, runs: Runs) -> Iterator[tuple[str, float]]:
         """Yield the tests of this aspect, and their p-values."""
