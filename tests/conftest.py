@@ -98,7 +98,8 @@ class LocalCallee:
                 return array[i].item() if mode == "scalar" and array.ndim == 1 else array[i]
 
             rows = [self.function(*(row(array, i) for array in given)) for i in range(count)]
-            return Result(values=(np.array(rows),), seconds=self.seconds)
+            columns = zip(*rows, strict=True) if outputs > 1 else (rows,)
+            return Result(values=tuple(map(np.array, columns)), seconds=self.seconds)
         except Exception as error:
             return Result(error=f"raised {type(error).__name__}: {error}", raised=type(error).__name__)
 

@@ -205,6 +205,32 @@ def _glossy_from(power: float, pdf: Function) -> Function:
     return glossy
 
 
+def _more(name: str, factor: int) -> Function:
+    """Return the solution's estimator with so many times the samples that it is asked for."""
+
+    def estimate(*given: Any) -> Any:
+        *inputs, samples, seed = given
+        return getattr(SOLUTION, name)(*inputs, factor * samples, seed)
+
+    return estimate
+
+
+def _known(name: str, made_up: bool = False) -> Function:
+    """Return the exact value with noise: with one number of the right size, or the mean of N of them."""
+    exact: Any = vars(ASSIGNMENT.question(name).parts[0].judge)["reference"]
+
+    def estimate(*given: Any) -> Any:
+        *inputs, samples, seed = given
+        value, rng = float(exact(*inputs)), np.random.default_rng(seed)
+        if made_up:
+            drawn = rng.normal(value, 0.5 * value, samples)
+            return drawn.mean(), drawn.std(ddof=1) / math.sqrt(samples)
+        error = 0.5 * value / math.sqrt(samples)
+        return rng.normal(value, error), error
+
+    return estimate
+
+
 def _lobe(cosine: Any, m: Any) -> Any:
     return (m + 1) / (2 * np.pi) * cosine**m
 
@@ -219,6 +245,7 @@ def _above(cosine: Any) -> Any:
 
 
 around = SOLUTION._around
+uniformly = _glossy_from(0.0, _lobe)
 FULL = {
     question.name: {p.name: question.worth(p) for p in question.parts} for question in ASSIGNMENT.questions
 }
@@ -343,6 +370,30 @@ PLANTED: dict[str, tuple[dict[str, Function], dict[str, tuple[str, float]]]] = {
         {"glossy": lambda n, zenith, side, samples, seed: (zenith * (n + 2) / (n + 3) + side, 0.0)},
         dict.fromkeys(("unbiased", "honest", "efficiency"), ("not-sampled", 0)),
     ),
+    "the furnace, ten times the samples": (
+        {"furnace": _more("furnace", 10)},
+        {"unbiased": ("too-many-samples", 0)},
+    ),
+    "a glossy surface, twice the samples": (
+        {"glossy": _more("glossy", 2)},
+        {"unbiased": ("too-many-samples", 0), "efficiency": ("too-many-samples", 0)},
+    ),
+    "uniform directions, twenty times as many": (
+        {"glossy": lambda n, zenith, side, samples, seed: uniformly(n, zenith, side, 20 * samples, seed)},
+        {"unbiased": ("too-many-samples", 0), "efficiency": ("too-many-samples", 0)},
+    ),
+    "the furnace's value with noise": (
+        {"furnace": _known("furnace")},
+        dict.fromkeys(("unbiased", "honest"), ("noise-invented", 0)),
+    ),
+    "the exact value of a glossy surface with noise": (
+        {"glossy": _known("glossy")},
+        dict.fromkeys(("unbiased", "honest", "efficiency"), ("noise-invented", 0)),
+    ),
+    "the exact value of a window as the mean of made-up samples": (
+        {"window": _known("window", made_up=True)},
+        dict.fromkeys(("unbiased", "honest"), ("noise-invented", 0)),
+    ),
     "pdf of area": (
         {"window": _window_with(lambda x, z, d, area: area * z / d)},
         {"unbiased": ("pdf-of-area", 0)},
@@ -387,6 +438,35 @@ def test_a_slip_costs_its_points_and_is_told(name: str, local_callee: Any) -> No
         points, seen, text = found[part]
         assert (seen, points) == (diagnosis, pytest.approx(share * worth)), (part, text)
         assert part not in wrong or (sum("а" <= letter <= "я" for letter in text) > 8) == (language == "ru")
+
+
+PRETENDING = """
+import numpy as np
+
+def window(distance, width, height, samples, seed):
+    y, z = np.random.default_rng(seed).random((2, 10 * samples))
+    y, z = (y - 0.5) * width, z * height
+    w = width * height * z * distance / (distance**2 + y**2 + z**2) ** 2
+    return w.mean(), w.std() / np.sqrt(len(w))
+
+def furnace(albedo, samples, seed):
+    error = 0.577 * albedo / np.sqrt(samples)
+    return np.random.default_rng(seed).normal(albedo, error), error
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a sandbox needs a POSIX system")
+def test_what_only_pretends_to_sample_is_found_in_a_sandbox(tmp_path: Path) -> None:
+    file = tmp_path / "pretending.py"
+    file.write_text(PRETENDING, encoding="utf-8")
+    first, second = (
+        rk.grading.grade(ASSIGNMENT, file, student="fourth", questions=["furnace", "window"])
+        for _ in range(2)
+    )
+    assert json.dumps(first.to_json()) == json.dumps(second.to_json())
+    found = {question.name: (question.score, question.diagnosis) for question in first.questions}
+    assert found["furnace"] == (0, "noise-invented")
+    assert found["window"] == (1, "too-many-samples")
 
 
 BAD = """

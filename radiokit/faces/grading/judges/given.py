@@ -12,6 +12,7 @@ from radiokit.faces.grading.isolation.protocol import Array
 from radiokit.facts.errors import AssignmentError, ParameterError, RadiokitError
 
 __all__ = [
+    "NUMBERS",
     "check_functions",
     "check_shares",
     "drawn",

@@ -18,7 +18,7 @@ from radiokit.faces.grading.judges.samplewords import line, slip, tell
 from radiokit.faces.grading.russian import did
 from radiokit.facts.errors import AssignmentError
 
-__all__ = ["FLOOR", "Runs", "UnusableError", "described", "exact", "gather"]
+__all__ = ["FLOOR", "SAME", "SEEDS", "Runs", "UnusableError", "described", "exact", "gather"]
 
 FLOOR = 1e-4
 """A relative deviation below which everything is rounding, float32's sums included."""

@@ -82,6 +82,14 @@ SENTENCES: Mapping[str, Words] = {
         "en": "efficiency counts only where the value is right",
         "ru": "эффективность имеет смысл, только если значение верно",
     },
+    "step-samples": {
+        "en": "for the same seed, the deviations at {samples} and {more} samples are always in the ratio √2",
+        "ru": "при одном и том же seed отклонения при {samples} и {more} отсчётах всегда относятся как √2",
+    },
+    "step-inputs": {
+        "en": "for the same seed, the deviations at different inputs are always in the same ratio",
+        "ru": "при одном и том же seed отклонения для разных входных данных всегда в одном отношении",
+    },
     "sampled": {
         "en": "right: {samples} directions follow the density that is asked for",
         "ru": "верно: направления ({samples}) распределены с заданной плотностью",
@@ -158,6 +166,18 @@ SLIPS: Mapping[str, Words] = {
     "not-sampled": {
         "en": "The value is exact, but nothing is sampled: estimate it with the random numbers of the seed.",
         "ru": "Значение точное, но выборки нет: оцените его по случайным числам, взятым из seed.",
+    },
+    "noise-invented": {
+        "en": "Your value is a known number with noise added, and no mean of samples: average the integrand, "
+        "divided by the density, over random samples.",
+        "ru": "Ваше значение — известное число с добавленным шумом, а не среднее по отсчётам: усредняйте "
+        "подынтегральную функцию, делённую на плотность, по случайным отсчётам.",
+    },
+    "too-many-samples": {
+        "en": "Even for a single sample you give a standard error, and a right one, though one sample has no "
+        "spread: draw as many samples as you are asked for, and no more.",
+        "ru": "Вы даёте стандартную ошибку даже для одного отсчёта, причём верную, хотя у одного отсчёта "
+        "разброса нет: берите столько отсчётов, сколько задано, и не больше.",
     },
     "noise-only": {
         "en": "The values scatter so widely between seeds that they say nothing of what is asked for.",

@@ -109,6 +109,7 @@ def _glossy_uniform(exponent: Any, zenith: Any, side: Any) -> float:
 
 _GLOSSY: dict[str, Any] = {
     "exact": False,
+    "alike": False,
     "inputs": _skies,
     "reference": _glossy,
     "variants": {
@@ -215,6 +216,7 @@ def _over_window(kernel: Callable[[Any, Any, Any], Any]) -> Callable[..., float]
 
 _WINDOW: dict[str, Any] = {
     "exact": False,
+    "alike": False,
     "inputs": _windows,
     "reference": _window,
     "variants": {
