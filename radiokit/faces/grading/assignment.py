@@ -17,7 +17,7 @@ from radiokit.faces.grading.isolation.limits import Limits
 from radiokit.faces.grading.judges.given import line_of
 from radiokit.faces.grading.names import check_names
 from radiokit.faces.grading.question import Part, Question
-from radiokit.faces.grading.words import Words, words
+from radiokit.faces.grading.words import Words, languages, words
 from radiokit.facts.errors import ParameterError, RadiokitError, TargetError, UnknownNameError
 
 __all__ = [
@@ -41,7 +41,8 @@ class Assignment:
     name : str
         An identifier, as in ``"radiometry"``.
     title, intro : mapping
-        ``{"en": ..., "ru": ...}``, the intro in Markdown with LaTeX.
+        ``{"en": ..., "ru": ...}``, the intro in Markdown with LaTeX. Either language may be left out; what
+        the title has is what all texts must have, and what it can be graded in.
     questions : tuple of Question
     limits : Limits
         What a submission may use.
@@ -63,7 +64,7 @@ class Assignment:
         if not isinstance(self.name, str) or not self.name.isidentifier():
             raise ParameterError("name", self.name, "an identifier")
         words("title", self.title)
-        words("intro", self.intro)
+        words("intro", self.intro, self.languages)
         if not isinstance(self.limits, Limits):
             raise ParameterError("limits", self.limits, "rk.grading.Limits(...)")
         if not isinstance(self.questions, tuple | list) or not all(
@@ -80,7 +81,14 @@ class Assignment:
         if not names or len(set(names)) != len(names):
             raise ParameterError("questions", names, "at least one question, each for functions of its own")
         object.__setattr__(self, "questions", tuple(self.questions))
+        for question in self.questions:
+            words(f"{question.name}: title", question.title, self.languages)
         check_names(self.questions)
+
+    @property
+    def languages(self) -> tuple[str, ...]:
+        """The languages of its texts."""
+        return languages(self.title)
 
     @property
     def points(self) -> float:

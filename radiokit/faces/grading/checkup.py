@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from radiokit.faces.diagnosis.misconception import LANGUAGES
 from radiokit.faces.grading.assignment import (
     Assignment,
     assignment_from_source,
@@ -100,7 +99,7 @@ def check_assignment(
 
     For some students' inputs, all that the judges call of the assignment's own is called: it must give finite
     numbers, and the same ones again. A student's copy with its blanks must earn nothing. A solution must earn
-    full marks with each student's inputs, in both languages in turn.
+    full marks with each student's inputs, in each of its languages in turn.
 
     Parameters
     ----------
@@ -149,11 +148,11 @@ def check_assignment(
             language,
             sound,
         )
-        for language in LANGUAGES
+        for language in work.languages
     ]
     solved = []
     for number, name in enumerate(names if solution is not None else ()):
-        language = LANGUAGES[number % len(LANGUAGES)]
+        language = work.languages[number % len(work.languages)]
         solved.append(_Try(text or work, str(solution), None, name, secret, language, sound))
     grades = list(_graded([*blanks, *solved] if sound else [], workers if text else 1, progress))
     for given in grades[: len(blanks)]:

@@ -75,7 +75,7 @@ def grade(
     secret : str
         What makes the inputs unforeseeable; keep it between runs, for they depend on it.
     language : str
-        ``"en"`` or ``"ru"``.
+        ``"en"`` or ``"ru"``, if the assignment has texts in it.
     questions : sequence of str, optional
         Only these, by their functions' names, as if the assignment had no others.
     earlier : Grade, optional
@@ -101,7 +101,7 @@ def grade(
     if questions is not None:
         wanted = {work.question(name).name for name in questions}
         work = replace(work, questions=tuple(each for each in work.questions if each.name in wanted))
-    checked_language(language)
+    checked_language(language, work.languages)
     done = {question.name: question for question in earlier.questions} if earlier is not None else {}
     grades: list[QuestionGrade] = []
     result = Grade(

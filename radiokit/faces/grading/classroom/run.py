@@ -130,8 +130,9 @@ def grade_class(
     if workers is None and scheduler is None:
         workers = available_workers()
     source, file = assignment_source(assignment)
-    order = Order(source, file, secret, checked_language(language), limits, code_digest())
+    order = Order(source, file, secret, language, limits, code_digest())
     work = assignment_of(order)
+    checked_language(language, work.languages)
     if Path(assignment).suffix == ".py":
         rehearse(work)
     students = None if roster is None else read_roster(roster)

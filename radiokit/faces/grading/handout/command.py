@@ -109,10 +109,12 @@ def _systems(
     from radiokit.faces.grading.formats.github import github_workflow
     from radiokit.faces.grading.formats.gradescope_zip import gradescope_zip
     from radiokit.faces.grading.rehearsal import rehearsed
+    from radiokit.faces.grading.words import checked_language
 
     for path in (gradescope, github):
         if path is not None and path.exists() and not force:
             raise TargetError(f"{path} is there; --force writes over it")
+    checked_language(language, rehearsed(name).languages)
     written = []
     if gradescope is not None:
         written.append(gradescope_zip(name, gradescope, secret=read_secret(secret_file), language=language))
@@ -158,7 +160,7 @@ def _list(found: list[Any], json: bool) -> None:
 def _show(found: Any, language: str, json: bool) -> None:
     from radiokit.faces.grading.words import checked_language
 
-    checked_language(language)
+    checked_language(language, found.languages)
     if json:
         show_json(_data(found))
         return

@@ -61,7 +61,7 @@ def write_handout(
     """
     work = rehearsed(assignment)
     for language in languages:
-        checked_language(language)
+        checked_language(language, work.languages)
     solved = None if solution is None else read_solution(solution, work)
     own = Path(assignment).resolve() if Path(assignment).suffix == ".py" else None
     files: dict[Path, str] = {}
