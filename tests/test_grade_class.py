@@ -467,6 +467,12 @@ def test_a_submission_whose_grading_ends_the_worker_is_for_a_person(tmp_path: Pa
     assert "ended its worker process 2 times" in found["boris"]["exitance"].review
 
 
+def test_a_roster_may_be_as_excel_writes_it(tmp_path: Path) -> None:
+    for text in ("entry,student\na,Anna\n", "\ufeffentry;student\r\na;Anna\r\n", "entry, student\na,Anna\n"):
+        (tmp_path / "roster.csv").write_text(text, encoding="utf-8", newline="")
+        assert read_roster(tmp_path / "roster.csv") == {"a": "Anna"}
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
@@ -475,6 +481,9 @@ def test_a_submission_whose_grading_ends_the_worker_is_for_a_person(tmp_path: Pa
         ({"--language": "de"}, "language = 'de'"),
         ({"--workers": "0"}, "workers = 0"),
         ({"--out": "tiny.py"}, "out = "),
+        ({"--out": "class"}, "out = 'class' is not allowed: it must be another folder than that of the sub"),
+        ({"--roster": "nowhere.csv"}, "nowhere.csv cannot be read: No such file or directory"),
+        ({"--roster": "names.csv"}, "names.csv has no column entry and no column student; it has name, mail"),
         ({"DIR": "nowhere"}, "no such folder"),
     ],
 )
@@ -488,6 +497,7 @@ def test_a_wrong_argument_is_named(
     from radiokit.faces.cli import main
 
     hand_in(tmp_path / "class", {"anna.py": RIGHT})
+    (tmp_path / "names.csv").write_text("name,mail\nAnna,anna@example.org\n")
     monkeypatch.chdir(tmp_path)
     given = {"DIR": "class", "--assignment": "tiny.py", "--out": "out", **change}
     words = [word for name, value in given.items() for word in ((value,) if name == "DIR" else (name, value))]

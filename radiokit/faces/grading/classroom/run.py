@@ -26,6 +26,7 @@ from radiokit.faces.grading.rehearsal import rehearse
 from radiokit.faces.grading.unfinished import no_submission
 from radiokit.faces.grading.words import checked_language
 from radiokit.faces.workers import available_workers
+from radiokit.facts.errors import ParameterError
 
 __all__ = ["ClassGrades", "grade_class"]
 
@@ -135,6 +136,8 @@ def grade_class(
     checked_language(language, work.languages)
     if Path(assignment).suffix == ".py":
         rehearse(work)
+    if Path(out).resolve() == Path(folder).resolve():
+        raise ParameterError("out", str(out), "another folder than that of the submissions")
     students = None if roster is None else read_roster(roster)
     ignored = [Path(each) for each in (out, roster) if each is not None]
     entries = discover(folder, roster=students, ignore=ignored)
