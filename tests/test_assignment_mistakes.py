@@ -110,6 +110,21 @@ FAULTS = {  # what is replaced, what with, and what must be said of it
         'density=cosine, pdf="drwa", aspect="density"',
         "did you mean 'draw'?",
     ),
+    "density's integral": (
+        "directions[:, 2], 0) / np.pi",
+        "directions[:, 2], 0) / 3",
+        "density gives 1.047 when it is integrated over the hemisphere: it must give 1",
+    ),
+    "own random numbers": (
+        '"theta": rng.uniform(0, 1.5, 8)',
+        '"theta": np.random.default_rng().random(8)',
+        "inputs gives other numbers for theta from the same generator",
+    ),
+    "random power": (
+        "rng.uniform(1, 20)",
+        "np.random.default_rng().random()",
+        "inputs gives other numbers for n from the same generator",
+    ),
     "u missing": ('"draw(u)"', '"draw(u, n)"', "the parameters of draw(u, n) after u are (n)"),
 }
 UNLOADABLE = {
@@ -148,6 +163,13 @@ UNLOADABLE = {
     "part's title": ('name="ordinary"', 'name="first"', "title of part first = {}"),
     "mapping for list": ('[{"albedo": 0.5}]', '{"albedo": 0.5}', 'such as [{"alpha": 0.1}]'),
     "limits": ('name="light"', 'name="light", limits={"seconds": 3}', "it must be rk.grading.Limits(...)"),
+    "misspelt argument": (JUDGE, "reference=lamp, rtoll=1e-5", "argument 'rtoll'; did you mean 'rtol'?"),
+    "unknown argument": (
+        JUDGE,
+        "reference=lamp, x=1",
+        "'x'; it has atol, context, credit, inputs, loose, ref",
+    ),
+    "misspelt judge": ("G.Estimator(", "G.Estimater(", "attribute Estimater; did you mean 'Estimator'?"),
     "missing": (
         ', intro=both("Light")',
         "",
@@ -225,6 +247,12 @@ def test_one_language_is_enough_and_the_other_is_refused_by_name(tmp_path, capsy
     with pytest.raises(ParameterError, match="no texts in another"):
         rk.grading.grade(work, tmp_path / "class" / "anna.py", language="ru")
     assert rk.grading.check_assignment(work, students=1).ok
+
+
+def test_what_an_assignment_prints_is_not_shown(capsys):
+    text = changed(LAMP, "print('debugging'); " + LAMP)
+    rehearse(assignment_from_source(text, "light.py"))
+    assert capsys.readouterr().out == ""
 
 
 def test_defaults_and_annotations_may_stand_in_a_signature():

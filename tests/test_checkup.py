@@ -55,6 +55,17 @@ def test_blanks_that_earn_points_and_faults_that_only_some_inputs_show(tmp_path)
     assert blank == "question irradiance, part ordinary: a blank earns 1 of 2 points"
 
 
+def test_a_tolerance_of_nothing_is_noted(tmp_path):
+    exact = tmp_path / "exact.py"
+    exact.write_text(
+        HOMEWORK.read_text().replace("reference=irradiance)", "reference=irradiance, rtol=0)", 1)
+    )
+    found = rk.grading.check_assignment(exact, students=1)
+    note = "question irradiance, part ordinary: rtol, ulps and atol are 0: only answers right to the last bit count"
+    assert found.ok
+    assert note in found.notes
+
+
 def test_students_are_at_least_one():
     with pytest.raises(ParameterError, match="students = 0"):
         rk.grading.check_assignment("radiometry", students=0)

@@ -6,6 +6,7 @@ import contextlib
 import hashlib
 import io
 import json
+import re
 import sys
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,7 +19,7 @@ from radiokit.faces.grading.judges.given import line_of
 from radiokit.faces.grading.names import check_names
 from radiokit.faces.grading.question import Part, Question
 from radiokit.faces.grading.words import Words, languages, words
-from radiokit.facts.errors import ParameterError, RadiokitError, TargetError, UnknownNameError
+from radiokit.facts.errors import ParameterError, RadiokitError, TargetError, UnknownNameError, suggestion
 
 __all__ = [
     "Assignment",
@@ -208,9 +209,21 @@ def assignment_from_source(source: str, file: str = "assignment.py") -> Assignme
     return assignment
 
 
+def _meant(said: str) -> str:
+    """Return what may be meant, or what there is, where radiokit has not what Python misses in it."""
+    grading = sys.modules["radiokit.faces.grading"]
+    if found := re.fullmatch(r"(\w+)\(\.\.\.\) got an unexpected keyword argument '(\w+)'", said):
+        known = sorted(getattr(getattr(grading, found[1], None), "__dataclass_fields__", ()))
+        return (suggestion(found[2], known) or f"; it has {', '.join(known)}") if known else ""
+    if found := re.fullmatch(r"No (radiokit[\w.]*) attribute (\w+)", said):
+        return suggestion(found[2], dir(sys.modules[found[1]]))
+    return ""
+
+
 def _told(error: BaseException, file: str) -> str:
     """Return in one line what an assignment's file did instead of running, where, and what would be right."""
     where, said = line_of(error), " ".join(str(error).split()).replace(".__init__()", "(...)")
+    said += _meant(said)
     if isinstance(error, SyntaxError):
         where, said = f" ({file}, line {error.lineno})", error.msg
     at = where.strip(" ()") or file

@@ -18,6 +18,7 @@ from radiokit.faces.grading.grades import Grade, PartGrade, QuestionGrade
 from radiokit.faces.grading.handout.cells import script
 from radiokit.faces.grading.handout.copies import student_cells
 from radiokit.faces.grading.handout.worked import read_solution
+from radiokit.faces.grading.judges.values import Values
 from radiokit.faces.grading.rehearsal import faults
 from radiokit.faces.workers import open_executor
 from radiokit.facts.errors import ParameterError
@@ -163,6 +164,12 @@ def check_assignment(
     mistakes += _short(grades[len(blanks) :])
     seconds = _seconds(grades[len(blanks) :])
     notes = [] if solution is not None else ["no solution was tried"]
+    notes += [
+        f"question {question.name}, part {part.name}: rtol, ulps and atol are 0: only answers right to the last bit count"
+        for question in work.questions
+        for part in question.parts
+        if isinstance(part.judge, Values) and part.judge.rtol == part.judge.ulps == part.judge.atol == 0
+    ]
     for name, (_, most) in seconds.items():
         allowed = work.question(name).seconds
         if most > SLOW * allowed:
