@@ -108,6 +108,7 @@ def _systems(
     from radiokit.faces.grading.command import read_secret
     from radiokit.faces.grading.formats.github import github_workflow
     from radiokit.faces.grading.formats.gradescope_zip import gradescope_zip
+    from radiokit.faces.grading.handout.write import write_out
     from radiokit.faces.grading.rehearsal import rehearsed
     from radiokit.faces.grading.words import checked_language
 
@@ -120,8 +121,7 @@ def _systems(
         written.append(gradescope_zip(name, gradescope, secret=read_secret(secret_file), language=language))
     if github is not None:
         text = github_workflow(name, f"{rehearsed(name).name}.{language}.ipynb", language=language)
-        github.parent.mkdir(parents=True, exist_ok=True)
-        github.write_text(text, encoding="utf-8")
+        write_out(github, text)
         written.append(github)
     return written
 
@@ -164,15 +164,16 @@ def _show(found: Any, language: str, json: bool) -> None:
     if json:
         show_json(_data(found))
         return
-    rows = [
-        (
-            "\n".join([question.signature, *question.also]),
-            question.title[language],
-            f"{question.points:g}",
-            ", ".join(f"{part.title[language]} ({question.worth(part):g})" for part in question.parts),
+    rows = []
+    for question in found.questions:
+        parts = (
+            f"{part.title[language]} ({question.worth(part):g})"
+            + ("" if part.visibility == "visible" else f", {part.visibility.replace('_', ' ')}")
+            for part in question.parts
         )
-        for question in found.questions
-    ]
+        rows.append((question.signature, question.title[language], f"{question.points:g}", "; ".join(parts)))
+        rows += [(each, "", "", "") for each in question.also]
+    rows.append(("", "", f"{found.points:g}", ""))
     show_table(found.title[language], ("function", "question", "points", "parts"), rows)
 
 
