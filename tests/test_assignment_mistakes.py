@@ -133,6 +133,11 @@ UNLOADABLE = {
         'points=2, hints={"cosine-forgoten": both("?")}',
         "did you mean 'cosine-forgotten'?",
     ),
+    "unknown hint": (
+        "points=2",
+        'points=2, hints={"xyz": both("?")}',
+        "rk.grading.list_diagnoses() has them",
+    ),
     "credit": (JUDGE, JUDGE + ', credit={"pi-to-many": 0.5}', "lamp, part ordinary: credit = 'pi-to-many'"),
     "variant": (
         JUDGE,

@@ -165,7 +165,8 @@ def check_assignment(
     seconds = _seconds(grades[len(blanks) :])
     notes = [] if solution is not None else ["no solution was tried"]
     notes += [
-        f"question {question.name}, part {part.name}: rtol, ulps and atol are 0: only answers right to the last bit count"
+        f"question {question.name}, part {part.name}: rtol, ulps and atol are 0: "
+        "only answers right to the last bit count"
         for question in work.questions
         for part in question.parts
         if isinstance(part.judge, Values) and part.judge.rtol == part.judge.ulps == part.judge.atol == 0

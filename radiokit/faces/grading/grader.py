@@ -177,7 +177,8 @@ def _judged_parts(
     numbers: dict[str, float] = {}
     for part in question.parts:
         name = question.judged(part)
-        missing = absent[name]
+        needed = (name, *getattr(part.judge, "needs", ()))
+        missing = next((absent[each] for each in needed if absent.get(each) is not None), None)
         if missing is not None:
             found[part.name] = missing
             continue

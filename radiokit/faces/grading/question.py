@@ -100,7 +100,7 @@ class Question:
         ``"cosine_sample(u)"``. A judge finds them with ``callee.other(name)``; a part may be on one of them.
     hints : mapping
         Further sentences ``{"en": ..., "ru": ...}`` by the misconception that they answer, one of
-        ``rk.list_misconceptions()`` or of a judge's ``variants``.
+        ``rk.grading.list_diagnoses()`` or of a judge's ``variants``.
     seconds : float
         Wall time for all calls of all its parts together [s], above 0.
 

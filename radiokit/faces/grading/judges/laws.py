@@ -39,6 +39,10 @@ FEWER_EVALUATIONS = 100_000, 1_000_000
 class Laws:
     """Judges whether a function f(wi, wo) obeys the laws, or breaks those that it should.
 
+    It is called with unit vectors, z the normal, ``wi`` to the light and ``wo`` to the viewer: arrays (N, 3),
+    or one pair at a time if it cannot bear that. It gives f in sr⁻¹, without the cosine, and 0 where either
+    lies below the horizon.
+
     What it is judged by are evaluations, never a clock: the same function earns the same on any machine. A
     function of arrays is searched as finely as ``rk.check`` does; one of single pairs more coarsely, every
     1.2° or so in place of 0.15°. Where its albedo is then too near 1 to tell, it is asked once more, at
