@@ -473,6 +473,24 @@ def test_a_roster_may_be_as_excel_writes_it(tmp_path: Path) -> None:
         assert read_roster(tmp_path / "roster.csv") == {"a": "Anna"}
 
 
+def test_entries_that_a_roster_does_not_name_are_counted(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from radiokit.faces.cli import main
+
+    assignment = hand_in(tmp_path / "class", {"anna.rar": "", "boris.rar": ""})
+    (tmp_path / "roster.csv").write_text("entry,student\nanna.rar,Anna\nboris,Boris\n")
+    words = [
+        "grade-class",
+        str(tmp_path / "class"),
+        f"--assignment={assignment}",
+        f"--out={tmp_path / 'out'}",
+    ]
+    with pytest.raises(SystemExit):
+        main([*words, f"--roster={tmp_path / 'roster.csv'}"])
+    assert "entries that the roster does not name, whose own names count: 1" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [

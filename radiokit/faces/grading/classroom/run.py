@@ -37,7 +37,7 @@ class ClassGrades:
 
     ``keys`` are the entries; ``summary`` is what ``class.json`` holds, counts alone; ``graded`` were graded
     in this run, in ``seconds`` of wall time by ``workers`` (0 on a cluster); ``strangers`` is how many
-    results in the folder are of no entry.
+    results in the folder are of no entry, and ``unlisted`` how many entries a roster does not name.
     """
 
     folder: Path
@@ -47,6 +47,7 @@ class ClassGrades:
     seconds: float = field(compare=False)
     workers: int = field(compare=False)
     strangers: int = 0
+    unlisted: int = 0
 
     def __len__(self) -> int:
         return len(self.keys)
@@ -166,6 +167,7 @@ def grade_class(
         seconds=seconds,
         workers=workers or 0,
         strangers=store.strangers(set(keys)),
+        unlisted=len(set(keys) - students.keys()) if students is not None else 0,
     )
 
 
