@@ -18,6 +18,7 @@ JUDGED = frozenset(
         "below",
         "constant-answer",
         "constant-rounded",
+        "energy-holds",
         "gains-energy",
         "imprecise",
         "negative",
@@ -27,9 +28,11 @@ JUDGED = frozenset(
         "not-the-model",
         "other-factor",
         "out-of-range",
+        "reciprocity-holds",
         "single-precision",
         "slow",
         "unclear",
+        "values-holds",
     }
 )
 """What the judges find beside the misconceptions of the catalogue."""

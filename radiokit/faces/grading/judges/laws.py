@@ -173,10 +173,12 @@ class Laws:
         except CallableError as error:
             return Finding(share=0.0, text=failed(error, language))
         kept = sum(self._weight(law) for law in self.laws if law not in wrong)
-        texts = [text for name, text in wrong.values() if name != "unjudged"]
+        said = {name: hint[language] for name, hint in hints.items()}
+        told = [(name, text) for name, text in wrong.values() if name != "unjudged"]
+        texts = [each for name, text in told for each in (text, said.get(name, ""))]
         unjudged = [law_name(law, language) for law, (name, _) in wrong.items() if name == "unjudged"]
         texts += [tell(language, "unjudged", laws=", ".join(unjudged))] if unjudged else []
-        texts += [refused] if refused else []
+        texts += [refused, said.get("not-the-model", "")] if refused else []
         if not texts and not like.text:
             texts = [f"{say(language, 'full')}: {'; '.join(right[law] for law in self.laws if law in right)}"]
         texts += [like.text, *remarks(tuple(notes), language)]
