@@ -20,6 +20,7 @@ from radiokit.faces.grading.handout.copies import student_cells
 from radiokit.faces.grading.handout.worked import read_solution
 from radiokit.faces.grading.judges.values import Values
 from radiokit.faces.grading.rehearsal import faults
+from radiokit.faces.grading.unfound import unfound
 from radiokit.faces.workers import open_executor
 from radiokit.facts.errors import ParameterError
 
@@ -171,6 +172,7 @@ def check_assignment(
         for part in question.parts
         if isinstance(part.judge, Values) and part.judge.rtol == part.judge.ulps == part.judge.atol == 0
     ]
+    notes += [] if wrong else unfound(work)
     for name, (_, most) in seconds.items():
         allowed = work.question(name).seconds
         if most > SLOW * allowed:
