@@ -208,6 +208,18 @@ def test_a_task_may_ask_for_what_breaks_a_law(coarse):
     assert (nowhere.share, nowhere.diagnosis) == (0.0, "not-finite")
 
 
+def test_a_brdf_that_is_divided_by_the_cosine_is_not_told_of_irradiance(coarse):
+    def divided(wi, wo):
+        return lambert(wi, wo, 0.5) / np.maximum(wi[..., 2], 1e-12)
+
+    found = judged(divided, laws=("values",), reference=lambda: Lambert(reflectance=0.5))
+    assert found.diagnosis == "cosine-forgotten"
+    assert "a division by that cosine is one too many" in found.text
+    own = {"cosine-forgotten": {"en": "Do not divide", "ru": "Не делите"}}
+    found = judged(divided, hints=own, laws=("values",), reference=lambda: Lambert(reflectance=0.5))
+    assert "Do not divide." in found.text
+
+
 def test_a_law_that_is_broken_may_have_a_hint(coarse):
     hints = {
         "gains-energy": {"en": "divide by π", "ru": "разделите на π"},
