@@ -117,8 +117,8 @@ LAW_SENTENCES: Mapping[str, Words] = {
 
 LIKENESS_HINTS: Mapping[str, Words] = {
     "cosine-forgotten": {
-        "en": "Your values are 1/cos θ times too large, θ the light's angle: a division by that cosine is one "
-        "too many, or a factor cos θ is missing.",
+        "en": "Your values are 1/cos θ times too large, θ the light's angle: a division by that cosine is "
+        "one too many, or a factor cos θ is missing.",
         "ru": "Ваши значения в 1/cos θ раз больше верных, где θ — угол падения: лишнее деление на этот "
         "косинус или не хватает множителя cos θ.",
     },
