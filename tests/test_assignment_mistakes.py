@@ -110,6 +110,21 @@ FAULTS = {  # what is replaced, what with, and what must be said of it
         'density=cosine, pdf="drwa", aspect="density"',
         "did you mean 'draw'?",
     ),
+    "density's integral": (
+        "directions[:, 2], 0) / np.pi",
+        "directions[:, 2], 0) / 3",
+        "density gives 1.047 when it is integrated over the hemisphere: it must give 1",
+    ),
+    "own random numbers": (
+        '"theta": rng.uniform(0, 1.5, 8)',
+        '"theta": np.random.default_rng().random(8)',
+        "inputs gives other numbers for theta from the same generator",
+    ),
+    "random power": (
+        "rng.uniform(1, 20)",
+        "np.random.default_rng().random()",
+        "inputs gives other numbers for n from the same generator",
+    ),
     "u missing": ('"draw(u)"', '"draw(u, n)"', "the parameters of draw(u, n) after u are (n)"),
 }
 UNLOADABLE = {
@@ -117,6 +132,11 @@ UNLOADABLE = {
         "points=2",
         'points=2, hints={"cosine-forgoten": both("?")}',
         "did you mean 'cosine-forgotten'?",
+    ),
+    "unknown hint": (
+        "points=2",
+        'points=2, hints={"xyz": both("?")}',
+        "rk.grading.list_diagnoses() has them",
     ),
     "credit": (JUDGE, JUDGE + ', credit={"pi-to-many": 0.5}', "lamp, part ordinary: credit = 'pi-to-many'"),
     "variant": (
@@ -130,6 +150,17 @@ UNLOADABLE = {
     "reference": (JUDGE, 'reference="lamp"', "reference = 'lamp' is not allowed: it must be a function"),
     "points": ("points=2", 'points="2"', "lamp: points = '2' is not allowed"),
     "language": ('text=both("Q")', 'text={"en": "Q"}', "lamp: text = {'en': 'Q'} is not allowed"),
+    "another language": ('text=both("Q")', 'text={"de": "Q"}', "or in one of these languages"),
+    "hint's language": (
+        "points=2",
+        'points=2, hints={"doubled": {"en": "?"}}',
+        """lamp: hints['doubled'] = {'en': '?'} is not allowed: it must be texts {"en": ..., "ru": ...}""",
+    ),
+    "question's languages": (
+        'title=both("Q"), text=both("Q")',
+        'title={"en": "Q"}, text={"en": "Q"}',
+        "lamp: title = {'en': 'Q'} is not allowed",
+    ),
     "star": ('"lamp(intensity, distance, theta)"', '"lamp(*inputs)"', "without * and **"),
     "one part": ("parts=(part,)", "parts=part", "lamp: parts = 'Part' is not allowed"),
     "judge for part": ("parts=(part,)", "parts=(judge,)", "lamp: parts = ['Values'] is not allowed"),
@@ -137,6 +168,13 @@ UNLOADABLE = {
     "part's title": ('name="ordinary"', 'name="first"', "title of part first = {}"),
     "mapping for list": ('[{"albedo": 0.5}]', '{"albedo": 0.5}', 'such as [{"alpha": 0.1}]'),
     "limits": ('name="light"', 'name="light", limits={"seconds": 3}', "it must be rk.grading.Limits(...)"),
+    "misspelt argument": (JUDGE, "reference=lamp, rtoll=1e-5", "argument 'rtoll'; did you mean 'rtol'?"),
+    "unknown argument": (
+        JUDGE,
+        "reference=lamp, x=1",
+        "'x'; it has atol, context, credit, inputs, loose, ref",
+    ),
+    "misspelt judge": ("G.Estimator(", "G.Estimater(", "attribute Estimater; did you mean 'Estimator'?"),
     "missing": (
         ', intro=both("Light")',
         "",
@@ -185,6 +223,41 @@ def test_a_mistake_is_found_when_the_file_is_loaded(name):
     assert said in str(caught.value)
     assert str(caught.value).startswith("light.py")
     assert "\n" not in str(caught.value)
+
+
+def test_one_language_is_enough_and_the_other_is_refused_by_name(tmp_path, capsys):
+    text = changed('{"en": text, "ru": text}', '{"en": text}')
+    file = tmp_path / "light.py"
+    file.write_text(text, encoding="utf-8")
+    work = load_assignment(file)
+    assert work.languages == ("en",)
+    wanted = "language = 'ru' is not allowed: it must be 'en': the assignment has no texts in another"
+    (tmp_path / "class").mkdir()
+    (tmp_path / "class" / "anna.py").write_text("")
+    commands = (
+        ["assignment", str(file), "--language", "ru"],
+        ["assignment", str(file), "--language", "ru", "--to", str(tmp_path / "handouts")],
+        ["assignment", str(file), "--language", "ru", "--gradescope", str(tmp_path / "zip.zip")],
+        ["assignment", str(file), "--language", "ru", "--github", str(tmp_path / "x.yml")],
+        ["grade", str(tmp_path / "class" / "anna.py"), "--assignment", str(file), "--language", "ru"],
+        ["grade-class", str(tmp_path / "class"), "--assignment", str(file), "--language", "ru", "--out=out"],
+    )
+    for words in commands:
+        with pytest.raises(SystemExit) as caught:
+            main(words)
+        assert caught.value.code == 2
+        assert wanted in capsys.readouterr().err
+    with pytest.raises(ParameterError, match="no texts in another"):
+        rk.grading.practice(work, language="ru")
+    with pytest.raises(ParameterError, match="no texts in another"):
+        rk.grading.grade(work, tmp_path / "class" / "anna.py", language="ru")
+    assert rk.grading.check_assignment(work, students=1).ok
+
+
+def test_what_an_assignment_prints_is_not_shown(capsys):
+    text = changed(LAMP, "print('debugging'); " + LAMP)
+    rehearse(assignment_from_source(text, "light.py"))
+    assert capsys.readouterr().out == ""
 
 
 def test_defaults_and_annotations_may_stand_in_a_signature():

@@ -9,6 +9,8 @@ import pytest
 
 import radiokit as rk
 from radiokit.faces.cli import main
+from radiokit.faces.grading.assignment import assignment_from_source
+from radiokit.faces.grading.unfound import unfound
 from radiokit.facts.errors import ParameterError
 
 HERE = Path(__file__).parent
@@ -53,6 +55,44 @@ def test_blanks_that_earn_points_and_faults_that_only_some_inputs_show(tmp_path)
     fault, blank = found.mistakes
     assert fault.startswith("question cone, part hard: reference raised AssertionError")
     assert blank == "question irradiance, part ordinary: a blank earns 1 of 2 points"
+
+
+def test_a_tolerance_of_nothing_is_noted(tmp_path):
+    exact = tmp_path / "exact.py"
+    exact.write_text(
+        HOMEWORK.read_text().replace("reference=irradiance)", "reference=irradiance, rtol=0)", 1)
+    )
+    found = rk.grading.check_assignment(exact, students=1)
+    note = "question irradiance, part ordinary: rtol, ulps and atol are 0: only answers right to the last bit"
+    assert found.ok
+    assert f"{note} count" in found.notes
+
+
+NOTED = """
+import radiokit as rk
+G = rk.grading
+TEXT = {"en": "Q"}
+def powers(rng): return {"n": rng.uniform(1, 20)}
+def lobe(n): return 2 / (n + 1)
+def density(n): return {"pdf": 1 / n}
+CREDIT = {"pdf-forgotten": 0.5, "doubled + sum-for-mean": 0.5, "pi-too-many": 0.5}
+PART = G.Part(name="unbiased", judge=G.Estimator(inputs=powers, reference=lobe, credit=CREDIT))
+ASSIGNMENT = G.Assignment(name="noted", title=TEXT, intro=TEXT, questions=(G.Question(
+    signature="lobe(n, samples, seed)", points=1, title=TEXT, text=TEXT, parts=(PART,),
+    hints={"cosine-forgotten": TEXT, "deviation-for-error": TEXT, "halved": TEXT}),))
+"""
+
+
+def test_hints_and_credit_that_can_come_to_nobody_are_noted():
+    known = "told by {}, which neither inputs nor context give"
+    assert list(unfound(assignment_from_source(NOTED))) == [
+        "question lobe, part unbiased: credit for 'pdf-forgotten' can come to nobody: it is "
+        + known.format("pdf"),
+        "question lobe: hints for 'cosine-forgotten' can come to nobody: it is " + known.format("cosine"),
+    ]
+    given = NOTED.replace("credit=CREDIT", "credit=CREDIT, context=density")
+    given = given.replace("parts=(PART,)", "parts=(PART, G.Part(name='hard', judge=G.Laws()))")
+    assert list(unfound(assignment_from_source(given))) == []
 
 
 def test_students_are_at_least_one():

@@ -288,7 +288,7 @@ def test_what_fails_in_a_task_is_for_a_person_and_is_tried_again(
     assert found.exit_code == 3
     assert found["anna"].score == 0
     assert found["anna"].problems == (
-        "it could not be graded (MemoryError: at /submission.py); a teacher will look at it",
+        "it could not be graded (MemoryError: at submission.py); a teacher will look at it",
     )
     monkeypatch.undo()
     found = grade_class(tmp_path / "class", assignment, out, workers=1)
@@ -471,6 +471,30 @@ def test_a_submission_whose_grading_ends_the_worker_is_for_a_person(tmp_path: Pa
     assert "ended its worker process 2 times" in found["boris"]["exitance"].review
 
 
+def test_a_roster_may_be_as_excel_writes_it(tmp_path: Path) -> None:
+    for text in ("entry,student\na,Anna\n", "\ufeffentry;student\r\na;Anna\r\n", "entry, student\na,Anna\n"):
+        (tmp_path / "roster.csv").write_text(text, encoding="utf-8", newline="")
+        assert read_roster(tmp_path / "roster.csv") == {"a": "Anna"}
+
+
+def test_entries_that_a_roster_does_not_name_are_counted(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from radiokit.faces.cli import main
+
+    assignment = hand_in(tmp_path / "class", {"anna.rar": "", "boris.rar": ""})
+    (tmp_path / "roster.csv").write_text("entry,student\nanna.rar,Anna\nboris,Boris\n")
+    words = [
+        "grade-class",
+        str(tmp_path / "class"),
+        f"--assignment={assignment}",
+        f"--out={tmp_path / 'out'}",
+    ]
+    with pytest.raises(SystemExit):
+        main([*words, f"--roster={tmp_path / 'roster.csv'}"])
+    assert "entries that the roster does not name, whose own names count: 1" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
@@ -479,6 +503,9 @@ def test_a_submission_whose_grading_ends_the_worker_is_for_a_person(tmp_path: Pa
         ({"--language": "de"}, "language = 'de'"),
         ({"--workers": "0"}, "workers = 0"),
         ({"--out": "tiny.py"}, "out = "),
+        ({"--out": "class"}, "out = 'class' is not allowed: it must be another folder than that of the sub"),
+        ({"--roster": "nowhere.csv"}, "nowhere.csv cannot be read: No such file or directory"),
+        ({"--roster": "names.csv"}, "names.csv has no column entry and no column student; it has name, mail"),
         ({"DIR": "nowhere"}, "no such folder"),
     ],
 )
@@ -492,6 +519,7 @@ def test_a_wrong_argument_is_named(
     from radiokit.faces.cli import main
 
     hand_in(tmp_path / "class", {"anna.py": RIGHT})
+    (tmp_path / "names.csv").write_text("name,mail\nAnna,anna@example.org\n")
     monkeypatch.chdir(tmp_path)
     given = {"DIR": "class", "--assignment": "tiny.py", "--out": "out", **change}
     words = [word for name, value in given.items() for word in ((value,) if name == "DIR" else (name, value))]

@@ -163,6 +163,7 @@ def test_no_check_is_offered_where_a_student_has_no_assignment(tmp_path):
         ("def irradiance(a, b): pass", r"irradiance has parameters \(a, b\), not \(intensity,"),
         ("import x\n@x\ndef irradiance(intensity, distance, theta): pass", "decorator"),
         ("def irradiance(", "is no Python"),
+        ("x = 1)", r"\(mine.py, line 1\)"),
     ],
 )
 def test_a_file_of_solutions_that_does_not_fit_is_refused(text, complaint, tmp_path):
@@ -185,6 +186,10 @@ def test_the_command_lists_and_shows(capsys):
     assert [each["name"] for each in json.loads(capsys.readouterr().out)["assignments"]] == list_assignments()
     assert run(HOMEWORK, "--language", "ru") == 0
     assert "трудные входы (1.5)" in capsys.readouterr().out
+    assert run("shading") == 0
+    rows = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert ["cosine_pdf(directions)"] in rows  # what a question also asks for has a row of its own
+    assert rows[-1] == ["20"]
     assert run("radiometri") == 2
     assert "did you mean 'radiometry'?" in capsys.readouterr().err
 
@@ -202,6 +207,23 @@ def test_the_command_writes_and_spares_what_somebody_has_changed(tmp_path, capsy
     assert mine.read_text().endswith("mine")
     assert run(*words, "--force") == 0
     assert not mine.read_text().endswith("mine")
+
+
+@pytest.mark.parametrize("option", ["--to", "--otter", "--nbgrader", "--github"])
+def test_where_nothing_can_be_written_is_said_in_one_line(option, tmp_path, capsys):
+    (tmp_path / "file").write_text("in the way")
+    assert run(HOMEWORK, option, tmp_path / "file" / "x.yml") == 2
+    told = capsys.readouterr().err
+    assert f"cannot write {tmp_path / 'file'}" in told
+    assert len(told.splitlines()) == 1
+
+
+def test_a_copy_without_checks_does_not_speak_of_them(tmp_path):
+    text = "are checked on here"
+    (own,) = rk.grading.write_handout(HOMEWORK, to=tmp_path, forms=[".py"])
+    (shipped,) = rk.grading.write_handout("radiometry", to=tmp_path, forms=[".py"])
+    assert text not in own.read_text("utf-8")
+    assert text in shipped.read_text("utf-8")
 
 
 @pytest.mark.parametrize("form", [".ipynb", ".py"])

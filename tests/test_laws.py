@@ -14,7 +14,7 @@ import pytest
 from radiokit.bsdfs import GGX, BlinnPhong, Lambert, Phong, PhongOriginal
 from radiokit.checks.probes import pairs
 from radiokit.contracts.blackbox import as_bsdf
-from radiokit.faces.grading import Laws, Limits, Sandbox
+from radiokit.faces.grading import Laws, Limits, Sandbox, list_diagnoses
 from radiokit.faces.grading.grader import Isolated
 from radiokit.faces.grading.handout.here import Here
 from radiokit.faces.grading.isolation.signature import listed, renamed
@@ -206,6 +206,34 @@ def test_a_task_may_ask_for_what_breaks_a_law(coarse):
     assert greedy.share == 1 / 4
     nowhere = judged(lambda wi, wo: np.nan * wi[:, 2], **asked)
     assert (nowhere.share, nowhere.diagnosis) == (0.0, "not-finite")
+
+
+def test_a_brdf_that_is_divided_by_the_cosine_is_not_told_of_irradiance(coarse):
+    def divided(wi, wo):
+        return lambert(wi, wo, 0.5) / np.maximum(wi[..., 2], 1e-12)
+
+    found = judged(divided, laws=("values",), reference=lambda: Lambert(reflectance=0.5))
+    assert found.diagnosis == "cosine-forgotten"
+    assert "a division by that cosine is one too many" in found.text
+    own = {"cosine-forgotten": {"en": "Do not divide", "ru": "Не делите"}}
+    found = judged(divided, hints=own, laws=("values",), reference=lambda: Lambert(reflectance=0.5))
+    assert "Do not divide." in found.text
+
+
+def test_a_law_that_is_broken_may_have_a_hint(coarse):
+    hints = {
+        "gains-energy": {"en": "divide by π", "ru": "разделите на π"},
+        "not-the-model": {"en": "not so dark", "ru": "светлее"},
+        "reciprocity-holds": {"en": "swap them", "ru": "поменяйте"},
+    }
+    found = judged(lambda wi, wo: 2 * lambert(wi, wo), hints=hints)
+    assert found.diagnosis == "gains-energy"
+    assert found.text == "Gains energy: reflects 200 % of the light at every angle. Divide by π."
+    assert "Разделите на π." in judged(lambda wi, wo: 2 * lambert(wi, wo), "ru", hints=hints).text
+    assert judged(lambda wi, wo: 0 * wi[:, 2], hints=hints, least=0.5).text.endswith("Not so dark.")
+    kept = judged(lambert, hints=hints, expected={"reciprocity": "violated"})
+    assert (kept.diagnosis, kept.text.endswith("Swap them.")) == ("reciprocity-holds", True)
+    assert set(hints) <= set(list_diagnoses())
 
 
 def test_laws_are_weighed_and_may_be_left_out(coarse):

@@ -101,6 +101,15 @@ def test_each_is_graded_and_one_that_is_not_there_costs_its_own_parts(tmp_path):
     )
 
 
+def test_a_density_that_is_misspelt_is_guessed(tmp_path):
+    file = tmp_path / "mine.py"
+    file.write_text(
+        "import numpy as np\ndef cosine_sample(u): return u\ndef cosine_PDF(directions): return 0\n"
+    )
+    found = G.grade("shading", file, questions=["cosine_sample"])["cosine_sample"]
+    assert found.parts[1].text == "defines no function cosine_pdf; is it cosine_PDF?"
+
+
 def test_a_students_check_of_either_leads_to_the_question(solution):
     check = G.practice(WORK)
     space = _space(instructor_cells(WORK, solution=read_solution(solution, WORK)))

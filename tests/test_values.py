@@ -363,6 +363,19 @@ def test_wrong_and_why(name: str) -> None:
     assert not re.search("[а-я]", texts["en", True])
 
 
+def _sine(half_angle: Array) -> Any:
+    return np.sin(half_angle)
+
+
+def test_an_angle_of_any_name_may_be_in_degrees() -> None:
+    judge = Values(inputs=lambda rng: {"half_angle": rng.uniform(0.1, 1.5, 24)}, reference=_sine)
+    for wrong in (np.radians, np.degrees):
+        found = told(judge, lambda half_angle, f=wrong: np.sin(f(half_angle)))
+        assert (found.share, found.diagnosis) == (0, "angle-unit")
+        assert found.text.startswith("The angle reached the function in a wrong unit")
+        assert "(half_angle)" in found.text
+
+
 @pytest.mark.parametrize("name", WRONG)
 def test_hidden_parts_give_no_right_value_away(name: str, seed: int) -> None:
     function, _ = WRONG[name]

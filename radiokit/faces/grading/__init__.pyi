@@ -37,6 +37,7 @@ from .judges.estimator import Estimator as Estimator
 from .judges.laws import Laws as Laws
 from .judges.sampler import Sampler as Sampler
 from .judges.values import Values as Values
+from .names import list_diagnoses as list_diagnoses
 from .question import Part as Part
 from .question import Question as Question
 from .record import grade_schema as grade_schema

@@ -6,6 +6,7 @@ import contextlib
 import hashlib
 import io
 import json
+import re
 import sys
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -17,8 +18,8 @@ from radiokit.faces.grading.isolation.limits import Limits
 from radiokit.faces.grading.judges.given import line_of
 from radiokit.faces.grading.names import check_names
 from radiokit.faces.grading.question import Part, Question
-from radiokit.faces.grading.words import Words, words
-from radiokit.facts.errors import ParameterError, RadiokitError, TargetError, UnknownNameError
+from radiokit.faces.grading.words import Words, languages, words
+from radiokit.facts.errors import ParameterError, RadiokitError, TargetError, UnknownNameError, suggestion
 
 __all__ = [
     "Assignment",
@@ -41,7 +42,8 @@ class Assignment:
     name : str
         An identifier, as in ``"radiometry"``.
     title, intro : mapping
-        ``{"en": ..., "ru": ...}``, the intro in Markdown with LaTeX.
+        ``{"en": ..., "ru": ...}``, the intro in Markdown with LaTeX. Either language may be left out; what
+        the title has is what all texts must have, and what it can be graded in.
     questions : tuple of Question
     limits : Limits
         What a submission may use.
@@ -63,7 +65,7 @@ class Assignment:
         if not isinstance(self.name, str) or not self.name.isidentifier():
             raise ParameterError("name", self.name, "an identifier")
         words("title", self.title)
-        words("intro", self.intro)
+        words("intro", self.intro, self.languages)
         if not isinstance(self.limits, Limits):
             raise ParameterError("limits", self.limits, "rk.grading.Limits(...)")
         if not isinstance(self.questions, tuple | list) or not all(
@@ -80,7 +82,14 @@ class Assignment:
         if not names or len(set(names)) != len(names):
             raise ParameterError("questions", names, "at least one question, each for functions of its own")
         object.__setattr__(self, "questions", tuple(self.questions))
+        for question in self.questions:
+            words(f"{question.name}: title", question.title, self.languages)
         check_names(self.questions)
+
+    @property
+    def languages(self) -> tuple[str, ...]:
+        """The languages of its texts."""
+        return languages(self.title)
 
     @property
     def points(self) -> float:
@@ -200,9 +209,21 @@ def assignment_from_source(source: str, file: str = "assignment.py") -> Assignme
     return assignment
 
 
+def _meant(said: str) -> str:
+    """Return what may be meant, or what there is, where radiokit has not what Python misses in it."""
+    grading = sys.modules["radiokit.faces.grading"]
+    if found := re.fullmatch(r"(\w+)\(\.\.\.\) got an unexpected keyword argument '(\w+)'", said):
+        known = sorted(getattr(getattr(grading, found[1], None), "__dataclass_fields__", ()))
+        return (suggestion(found[2], known) or f"; it has {', '.join(known)}") if known else ""
+    if found := re.fullmatch(r"No (radiokit[\w.]*) attribute (\w+)", said):
+        return suggestion(found[2], dir(sys.modules[found[1]]))
+    return ""
+
+
 def _told(error: BaseException, file: str) -> str:
     """Return in one line what an assignment's file did instead of running, where, and what would be right."""
     where, said = line_of(error), " ".join(str(error).split()).replace(".__init__()", "(...)")
+    said += _meant(said)
     if isinstance(error, SyntaxError):
         where, said = f" ({file}, line {error.lineno})", error.msg
     at = where.strip(" ()") or file

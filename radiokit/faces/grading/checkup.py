@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from radiokit.faces.diagnosis.misconception import LANGUAGES
 from radiokit.faces.grading.assignment import (
     Assignment,
     assignment_from_source,
@@ -19,7 +18,9 @@ from radiokit.faces.grading.grades import Grade, PartGrade, QuestionGrade
 from radiokit.faces.grading.handout.cells import script
 from radiokit.faces.grading.handout.copies import student_cells
 from radiokit.faces.grading.handout.worked import read_solution
+from radiokit.faces.grading.judges.values import Values
 from radiokit.faces.grading.rehearsal import faults
+from radiokit.faces.grading.unfound import unfound
 from radiokit.faces.workers import open_executor
 from radiokit.facts.errors import ParameterError
 
@@ -100,7 +101,7 @@ def check_assignment(
 
     For some students' inputs, all that the judges call of the assignment's own is called: it must give finite
     numbers, and the same ones again. A student's copy with its blanks must earn nothing. A solution must earn
-    full marks with each student's inputs, in both languages in turn.
+    full marks with each student's inputs, in each of its languages in turn.
 
     Parameters
     ----------
@@ -149,11 +150,11 @@ def check_assignment(
             language,
             sound,
         )
-        for language in LANGUAGES
+        for language in work.languages
     ]
     solved = []
     for number, name in enumerate(names if solution is not None else ()):
-        language = LANGUAGES[number % len(LANGUAGES)]
+        language = work.languages[number % len(work.languages)]
         solved.append(_Try(text or work, str(solution), None, name, secret, language, sound))
     grades = list(_graded([*blanks, *solved] if sound else [], workers if text else 1, progress))
     for given in grades[: len(blanks)]:
@@ -164,6 +165,14 @@ def check_assignment(
     mistakes += _short(grades[len(blanks) :])
     seconds = _seconds(grades[len(blanks) :])
     notes = [] if solution is not None else ["no solution was tried"]
+    notes += [
+        f"question {question.name}, part {part.name}: rtol, ulps and atol are 0: "
+        "only answers right to the last bit count"
+        for question in work.questions
+        for part in question.parts
+        if isinstance(part.judge, Values) and part.judge.rtol == part.judge.ulps == part.judge.atol == 0
+    ]
+    notes += [] if wrong else unfound(work)
     for name, (_, most) in seconds.items():
         allowed = work.question(name).seconds
         if most > SLOW * allowed:

@@ -66,11 +66,11 @@ def grade(
     from radiokit.faces.grading.words import checked_language
 
     files = [output(target) for target in out or ()]
-    checked_language(language)
     if not student.isprintable():
         raise ParameterError("student", student, "of printable letters")
     source, name = assignment_source(assignment)
     work = assignment_from_source(source, name)
+    checked_language(language, work.languages)
     if Path(assignment).suffix == ".py":
         rehearse(work)
     if submission.suffix not in (".py", ".ipynb"):

@@ -64,7 +64,12 @@ class Callee(Protocol):
 
 
 class Judge(Protocol):
-    """What says how right a function is."""
+    """What says how right a function is.
+
+    One of your own may also have ``diagnoses``, what it finds beside ``rk.grading.list_diagnoses()``;
+    ``needs``, the further functions without which it judges nothing; and ``rehearse(question, rng)``, which
+    raises where its own inputs or references are wrong.
+    """
 
     def judge(
         self,

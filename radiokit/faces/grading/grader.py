@@ -75,7 +75,7 @@ def grade(
     secret : str
         What makes the inputs unforeseeable; keep it between runs, for they depend on it.
     language : str
-        ``"en"`` or ``"ru"``.
+        ``"en"`` or ``"ru"``, if the assignment has texts in it.
     questions : sequence of str, optional
         Only these, by their functions' names, as if the assignment had no others.
     earlier : Grade, optional
@@ -100,7 +100,7 @@ def grade(
     taken = {name for each in work.questions for name in each.functions}
     wanted = {work.question(name).name for name in questions} if questions is not None else taken
     asked = [each for each in work.questions if each.name in wanted]
-    checked_language(language)
+    checked_language(language, work.languages)
     done = {question.name: question for question in earlier.questions} if earlier is not None else {}
     grades: list[QuestionGrade] = []
     result = Grade(
@@ -163,7 +163,8 @@ def _judged(
     numbers: dict[str, float] = {}
     for part in question.parts:
         name = question.judged(part)
-        missing = absent[name]
+        needed = (name, *getattr(part.judge, "needs", ()))
+        missing = next((absent[each] for each in needed if absent.get(each) is not None), None)
         if missing is not None:
             found[part.name] = missing
             continue

@@ -9,7 +9,7 @@ from radiokit.faces.grading.judges.samplewords import SLIPS
 from radiokit.faces.grading.question import Question
 from radiokit.facts.errors import ParameterError, suggestion
 
-__all__ = ["JUDGED", "check_names"]
+__all__ = ["JUDGED", "check_names", "list_diagnoses"]
 
 JUDGED = frozenset(
     {
@@ -18,6 +18,7 @@ JUDGED = frozenset(
         "below",
         "constant-answer",
         "constant-rounded",
+        "energy-holds",
         "gains-energy",
         "imprecise",
         "negative",
@@ -27,12 +28,26 @@ JUDGED = frozenset(
         "not-the-model",
         "other-factor",
         "out-of-range",
+        "reciprocity-holds",
         "single-precision",
         "slow",
         "unclear",
+        "values-holds",
     }
 )
 """What the judges find beside the misconceptions of the catalogue."""
+
+
+def list_diagnoses() -> list[str]:
+    """Return all that a judge can find: names for a question's hints, and for a judge's credit.
+
+    They are those of ``rk.list_misconceptions()`` and what the judges find beside, such as lost digits, a law
+    that is broken, or a standard error that is none.
+
+    >>> {"pi-too-many", "imprecise", "not-reciprocal", "deviation-for-error"} <= set(list_diagnoses())
+    True
+    """
+    return sorted({entry.name for entry in CATALOGUE} | SLIPS.keys() | JUDGED)
 
 
 def check_names(questions: Iterable[Question]) -> None:
@@ -69,4 +84,4 @@ def check_names(questions: Iterable[Question]) -> None:
 
 def _refuse(where: str, name: str, known: Iterable[str], allowed: str) -> None:
     guess = suggestion(str(name), sorted(known))
-    raise ParameterError(where, name, f"{allowed}{guess or '; rk.list_misconceptions() has them'}")
+    raise ParameterError(where, name, f"{allowed}{guess or '; rk.grading.list_diagnoses() has them'}")

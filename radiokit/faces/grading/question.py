@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Literal, get_args
 
 from radiokit.faces.grading.finding import Judge
-from radiokit.faces.grading.words import Words, words
+from radiokit.faces.grading.words import Words, languages, words
 from radiokit.facts.errors import ParameterError
 
 __all__ = ["PARTS", "Part", "Question", "Visibility"]
@@ -25,7 +25,9 @@ PARTS: Mapping[str, Words] = {
     "honest": {"en": "honest standard error", "ru": "честная стандартная ошибка"},
     "unbiased": {"en": "no bias", "ru": "несмещённость"},
     "distribution": {"en": "distribution of the samples", "ru": "распределение выборки"},
+    "density": {"en": "density", "ru": "плотность"},
     "efficiency": {"en": "efficiency", "ru": "эффективность"},
+    "laws": {"en": "laws", "ru": "законы"},
 }
 """Titles of parts by their usual names."""
 
@@ -91,14 +93,14 @@ class Question:
     points : float
         Above 0; shared by the parts by their weights.
     title, text : mapping
-        ``{"en": ..., "ru": ...}``, the text in Markdown with LaTeX.
+        ``{"en": ..., "ru": ...}``, the text in Markdown with LaTeX; in the languages of the assignment.
     parts : tuple of Part
     also : tuple of str
         The signatures of further functions that it asks for, such as ``"cosine_pdf(directions)"`` beside
         ``"cosine_sample(u)"``. A judge finds them with ``callee.other(name)``; a part may be on one of them.
     hints : mapping
         Further sentences ``{"en": ..., "ru": ...}`` by the misconception that they answer, one of
-        ``rk.list_misconceptions()`` or of a judge's ``variants``.
+        ``rk.grading.list_diagnoses()`` or of a judge's ``variants``.
     seconds : float
         Wall time for all calls of all its parts together [s], above 0.
 
@@ -149,12 +151,12 @@ class Question:
             value = getattr(self, name)
             if not isinstance(value, int | float) or not 0 < value < math.inf:
                 raise ParameterError(f"{self.name}: {name}", value, "a finite number above 0")
-        words(f"{self.name}: title", self.title)
-        words(f"{self.name}: text", self.text)
+        has = languages(words(f"{self.name}: title", self.title))
+        words(f"{self.name}: text", self.text, has)
         if not isinstance(self.hints, Mapping):
             raise ParameterError(f"{self.name}: hints", self.hints, "texts by misconception")
         for hint, said in self.hints.items():
-            words(f"{self.name}: hints[{hint!r}]", said)
+            words(f"{self.name}: hints[{hint!r}]", said, has)
         if not isinstance(self.parts, tuple | list) or not all(isinstance(part, Part) for part in self.parts):
             allowed = "a tuple of rk.grading.Part(name=..., judge=...); one alone is (Part(...),)"
             kinds = (
@@ -166,6 +168,7 @@ class Question:
             raise ParameterError(f"{self.name}: parts", names, "at least one part, each of a name of its own")
         object.__setattr__(self, "parts", tuple(self.parts))
         for part in self.parts:
+            words(f"{self.name}: title of part {part.name}", part.title, has)
             if self.judged(part) not in self.functions:
                 raise ParameterError("function", part.function, f"among {', '.join(self.functions)}")
 

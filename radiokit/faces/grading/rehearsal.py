@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,8 @@ import numpy as np
 
 from radiokit.faces.grading.assignment import Assignment, load_assignment, student_rng
 from radiokit.faces.grading.isolation.protocol import Array
+from radiokit.faces.grading.judges.directions import integral
+from radiokit.faces.grading.judges.draws import cells_of_density
 from radiokit.faces.grading.judges.estimator import Estimator
 from radiokit.faces.grading.judges.exact import as_function
 from radiokit.faces.grading.judges.given import drawn, number, numbers, own, shown, truth
@@ -25,6 +28,8 @@ __all__ = ["faults", "rehearse", "rehearsed"]
 
 DIRECTIONS = np.array([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [0.0, 0.8, 0.6], [-0.48, 0.64, 0.6]])
 """Where densities and BRDFs are tried."""
+OFF, AGREE = 0.03, 0.01
+"""How far the integral of a density must be off, and how well two rules must agree on it, to be an error."""
 
 
 def rehearse(assignment: Assignment, *, student: str = "", secret: str = "") -> None:
@@ -91,7 +96,7 @@ def _tried(part: Part, question: Question, rng: np.random.Generator) -> None:
 
 
 def _values(judge: Values, question: Question, rng: np.random.Generator) -> None:
-    given, reference = drawn(judge.inputs, rng), as_function(judge.reference)
+    given, reference = _drawn_again(judge.inputs, rng), as_function(judge.reference)
     _named(question, list(given), after=question.parameters[len(given) :][: _optional(question, given)])
     right = truth(reference, given)
     allowed = judge.allowed(right, judge.rtol)
@@ -118,7 +123,7 @@ def _values(judge: Values, question: Question, rng: np.random.Generator) -> None
 
 def _estimator(judge: Estimator, question: Question, rng: np.random.Generator) -> None:
     state, reference = rng.bit_generator.state, as_function(judge.reference)
-    given = drawn(judge.inputs, rng, rows=False)
+    given = _drawn_again(judge.inputs, rng, rows=False)
     _named(question, list(given), after=question.parameters[len(given) :][:2])
     if len(question.parameters) != len(given) + 2 or question.parameters[-2:] == ("seed", "samples"):
         wanted = ", ".join([*given, "samples", "seed"])
@@ -139,13 +144,14 @@ def _estimator(judge: Estimator, question: Question, rng: np.random.Generator) -
 
 
 def _sampler(judge: Sampler, question: Question, rng: np.random.Generator) -> None:
-    given = drawn(judge.inputs, rng, rows=False)
+    given = _drawn_again(judge.inputs, rng, rows=False)
     _named(question, list(given), before=question.parameters[:1])
     functions = {"density": judge.density, "integrand": judge.integrand}
     functions |= {f"variants[{name!r}]": variant for name, variant in judge.variants.items()}
     for what, function in functions.items():
         if function is not None:
             called(function, DIRECTIONS, given, what)
+    _whole(partial(called, judge.density, given=given))
 
 
 def _laws(judge: Laws, question: Question, rng: np.random.Generator) -> None:
@@ -168,6 +174,16 @@ def _laws(judge: Laws, question: Question, rng: np.random.Generator) -> None:
                 )
 
 
+def _whole(density: Callable[[Array], Array]) -> None:
+    """Check that a density is 1 when it is integrated, as far as two rules agree on what it is instead."""
+    cells = cells_of_density(density)
+    sums = float(cells.shares()[0].sum()), integral(density, cells.width)
+    if abs(sums[0] - sums[1]) < AGREE and all(abs(each - 1) > OFF for each in sums):
+        raise AssignmentError(
+            f"density gives {sums[1]:.4g} when it is integrated over the hemisphere: it must give 1"
+        )
+
+
 _TRIED: Mapping[type, Callable[[Any, Question, np.random.Generator], None]] = {
     Values: _values,
     Estimator: _estimator,
@@ -183,6 +199,23 @@ def _is_of(signature: str, function: str) -> bool:
 def _optional(question: Question, given: Mapping[str, Any]) -> int:
     """Return how many of the parameters that get no input need none."""
     return len(question.parameters) - max(len(given), question.needed)
+
+
+def _drawn_again(
+    inputs: Callable[..., Any], rng: np.random.Generator, *, rows: bool = True
+) -> dict[str, Array]:
+    """Return inputs, and check that the same generator gives the same ones again."""
+    state = rng.bit_generator.state
+    first = drawn(inputs, rng, rows=rows)
+    rng.bit_generator.state = state
+    given = drawn(inputs, rng, rows=rows)
+    for name, array in given.items():
+        if name not in first or not np.array_equal(array, first[name]):
+            raise AssignmentError(
+                f"inputs gives other numbers for {name} from the same generator: what is random must come "
+                "from the generator that it is given"
+            )
+    return given
 
 
 def _named(

@@ -20,7 +20,7 @@ def nothing_yet(assignment: Assignment, *, student: str = "", language: str = "e
     >>> grade.score, grade.complete
     (0, False)
     """
-    checked_language(language)
+    checked_language(language, assignment.languages)
     return Grade(
         assignment=assignment.name,
         title=assignment.title[language],
@@ -49,7 +49,7 @@ def no_submission(
 
     ``review`` says that a person should look at it.
     """
-    text = say(checked_language(language), "no-submission", error=error)
+    text = say(checked_language(language, assignment.languages), "no-submission", error=error)
     grade = nothing_yet(assignment, student=student, language=language)
     questions = tuple(_without_points(question, text, language) for question in assignment.questions)
     if review:

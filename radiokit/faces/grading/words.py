@@ -1,17 +1,17 @@
-"""Words: the sentences of feedback, in English and Russian, and the check that a text has both."""
+"""Words: the sentences of feedback, in English and Russian, and the check of an assignment's own texts."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from radiokit.faces.diagnosis.misconception import LANGUAGES
 from radiokit.facts.errors import ParameterError
 
-__all__ = ["SENTENCES", "Words", "checked_language", "say", "sentence", "words"]
+__all__ = ["SENTENCES", "Words", "checked_language", "languages", "say", "sentence", "words"]
 
 Words = Mapping[str, str]
-"""A text by language, ``{"en": ..., "ru": ...}``."""
+"""A text by language, ``{"en": ..., "ru": ...}``; one of them may be left out."""
 
 SENTENCES: Mapping[str, Words] = {
     "full": {"en": "right", "ru": "верно"},
@@ -137,16 +137,18 @@ SENTENCES: Mapping[str, Words] = {
 """What feedback can say; the sentences on misconceptions stand in the catalogue of diagnoses."""
 
 
-def checked_language(language: str) -> str:
-    """Return ``language`` if there are words in it.
+def checked_language(language: str, known: Sequence[str] = LANGUAGES) -> str:
+    """Return ``language`` if there are words in it; ``known`` are the languages of an assignment's texts.
 
     Raises
     ------
     ParameterError
-        When it is not ``"en"`` or ``"ru"``.
+        When it is none of them.
     """
-    if language not in LANGUAGES:
-        raise ParameterError("language", language, " or ".join(map(repr, LANGUAGES)))
+    if language not in known:
+        those = " or ".join(map(repr, known))
+        only = those if len(known) == len(LANGUAGES) else f"{those}: the assignment has no texts in another"
+        raise ParameterError("language", language, only)
     return language
 
 
@@ -187,16 +189,28 @@ def _noun(language: str, count: int) -> str:
     return "input" if count == 1 else "inputs"
 
 
-def words(name: str, given: Words) -> Words:
-    """Return ``given`` if it has a text in each language.
+def words(name: str, given: Words, needed: Sequence[str] = ()) -> Words:
+    """Return ``given`` if it has texts, of known languages, and one in each that is needed.
 
     Raises
     ------
     ParameterError
         When one is missing or empty; ``name`` is the argument that is named.
     """
-    if not isinstance(given, Mapping) or not all(
-        isinstance(given.get(each), str) and given[each] for each in LANGUAGES
-    ):
-        raise ParameterError(name, given, 'texts {"en": ..., "ru": ...}')
+    if not isinstance(given, Mapping) or not given or not set(given) <= set(LANGUAGES):
+        raise ParameterError(name, given, 'texts {"en": ..., "ru": ...}, or in one of these languages')
+    if not all(isinstance(text, str) and text.strip() for text in given.values()):
+        raise ParameterError(name, given, "texts that are not empty")
+    if not set(needed) <= set(given):
+        texts = ", ".join(f'"{each}": ...' for each in needed)
+        raise ParameterError(name, given, f"texts {{{texts}}}, in each language of the title")
     return given
+
+
+def languages(given: Words) -> tuple[str, ...]:
+    """Return the languages of a text.
+
+    >>> languages({"ru": "Свет", "en": "Light"})
+    ('en', 'ru')
+    """
+    return tuple(each for each in LANGUAGES if each in given)

@@ -114,5 +114,7 @@ def _show(found: Any) -> None:
         )
     else:
         write("nothing had changed")
+    if found.unlisted:
+        write(f"entries that the roster does not name, whose own names count: {found.unlisted}")
     if found.strangers:
         write(f"{found.strangers} results in {found.folder / 'results'} are of no entry")

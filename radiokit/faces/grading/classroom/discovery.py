@@ -107,6 +107,8 @@ def discover(
 def read_roster(file: str | Path) -> dict[str, str]:
     """Return the students by key, from a CSV file with the columns ``entry`` and ``student``.
 
+    Where there is no comma among its columns, semicolons part them, as Excel writes them in Russian.
+
     Raises
     ------
     TargetError
@@ -116,10 +118,15 @@ def read_roster(file: str | Path) -> dict[str, str]:
     found: dict[str, str] = {}
     try:
         with path.open(encoding="utf-8-sig", newline="") as lines:
-            rows = csv.DictReader(lines)
-            missing = {"entry", "student"} - set(rows.fieldnames or ())
+            first = lines.readline()
+            lines.seek(0)
+            rows = csv.DictReader(lines, delimiter=";" if ";" in first and "," not in first else ",")
+            columns = [column.strip() for column in rows.fieldnames or ()]
+            rows.fieldnames = columns
+            missing = {"entry", "student"} - set(columns)
             if missing:
-                raise TargetError(f"{path.name} has no column {' and no column '.join(sorted(missing))}")
+                has = f"; it has {', '.join(columns)}" if columns else ""
+                raise TargetError(f"{path.name} has no column {' and no column '.join(sorted(missing))}{has}")
             for row in rows:
                 key, student = (_plain((row[column] or "").strip()) for column in ("entry", "student"))
                 if not key or not student:
@@ -128,7 +135,8 @@ def read_roster(file: str | Path) -> dict[str, str]:
                     raise TargetError(f"{path.name}, line {rows.line_num}: the entry stands there twice")
                 found[key] = student
     except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise TargetError(f"{path.name} cannot be read: {type(error).__name__}") from error
+        why = getattr(error, "strerror", None) or "it must be CSV in UTF-8"
+        raise TargetError(f"{path.name} cannot be read: {why}") from error
     return found
 
 

@@ -26,6 +26,7 @@ from radiokit.faces.grading.rehearsal import rehearse
 from radiokit.faces.grading.unfinished import no_submission
 from radiokit.faces.grading.words import checked_language
 from radiokit.faces.workers import available_workers
+from radiokit.facts.errors import ParameterError
 
 __all__ = ["ClassGrades", "grade_class"]
 
@@ -36,7 +37,7 @@ class ClassGrades:
 
     ``keys`` are the entries; ``summary`` is what ``class.json`` holds, counts alone; ``graded`` were graded
     in this run, in ``seconds`` of wall time by ``workers`` (0 on a cluster); ``strangers`` is how many
-    results in the folder are of no entry.
+    results in the folder are of no entry, and ``unlisted`` how many entries a roster does not name.
     """
 
     folder: Path
@@ -46,6 +47,7 @@ class ClassGrades:
     seconds: float = field(compare=False)
     workers: int = field(compare=False)
     strangers: int = 0
+    unlisted: int = 0
 
     def __len__(self) -> int:
         return len(self.keys)
@@ -130,10 +132,13 @@ def grade_class(
     if workers is None and scheduler is None:
         workers = available_workers()
     source, file = assignment_source(assignment)
-    order = Order(source, file, secret, checked_language(language), limits, code_digest())
+    order = Order(source, file, secret, language, limits, code_digest())
     work = assignment_of(order)
+    checked_language(language, work.languages)
     if Path(assignment).suffix == ".py":
         rehearse(work)
+    if Path(out).resolve() == Path(folder).resolve():
+        raise ParameterError("out", str(out), "another folder than that of the submissions")
     students = None if roster is None else read_roster(roster)
     ignored = [Path(each) for each in (out, roster) if each is not None]
     entries = discover(folder, roster=students, ignore=ignored)
@@ -162,6 +167,7 @@ def grade_class(
         seconds=seconds,
         workers=workers or 0,
         strangers=store.strangers(set(keys)),
+        unlisted=len(set(keys) - students.keys()) if students is not None else 0,
     )
 
 

@@ -124,13 +124,13 @@ def gradescope_zip(
     RadiokitError
         When there is no such assignment, or the file cannot be written.
     """
-    checked_language(language)
     if isinstance(assignment, Assignment):
         raise ParameterError(
             "assignment", assignment.name, "its name or its file, which the zip file takes along"
         )
     source, name = assignment_source(assignment)
     work = assignment_from_source(source, name)
+    checked_language(language, work.languages)
     if Path(assignment).suffix == ".py":
         rehearse(work)
     python = f"{sys.version_info.major}.{sys.version_info.minor}"

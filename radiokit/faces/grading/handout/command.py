@@ -108,18 +108,20 @@ def _systems(
     from radiokit.faces.grading.command import read_secret
     from radiokit.faces.grading.formats.github import github_workflow
     from radiokit.faces.grading.formats.gradescope_zip import gradescope_zip
+    from radiokit.faces.grading.handout.write import write_out
     from radiokit.faces.grading.rehearsal import rehearsed
+    from radiokit.faces.grading.words import checked_language
 
     for path in (gradescope, github):
         if path is not None and path.exists() and not force:
             raise TargetError(f"{path} is there; --force writes over it")
+    checked_language(language, rehearsed(name).languages)
     written = []
     if gradescope is not None:
         written.append(gradescope_zip(name, gradescope, secret=read_secret(secret_file), language=language))
     if github is not None:
         text = github_workflow(name, f"{rehearsed(name).name}.{language}.ipynb", language=language)
-        github.parent.mkdir(parents=True, exist_ok=True)
-        github.write_text(text, encoding="utf-8")
+        write_out(github, text)
         written.append(github)
     return written
 
@@ -158,19 +160,20 @@ def _list(found: list[Any], json: bool) -> None:
 def _show(found: Any, language: str, json: bool) -> None:
     from radiokit.faces.grading.words import checked_language
 
-    checked_language(language)
+    checked_language(language, found.languages)
     if json:
         show_json(_data(found))
         return
-    rows = [
-        (
-            "\n".join([question.signature, *question.also]),
-            question.title[language],
-            f"{question.points:g}",
-            ", ".join(f"{part.title[language]} ({question.worth(part):g})" for part in question.parts),
+    rows = []
+    for question in found.questions:
+        parts = (
+            f"{part.title[language]} ({question.worth(part):g})"
+            + ("" if part.visibility == "visible" else f", {part.visibility.replace('_', ' ')}")
+            for part in question.parts
         )
-        for question in found.questions
-    ]
+        rows.append((question.signature, question.title[language], f"{question.points:g}", "; ".join(parts)))
+        rows += [(each, "", "", "") for each in question.also]
+    rows.append(("", "", f"{found.points:g}", ""))
     show_table(found.title[language], ("function", "question", "points", "parts"), rows)
 
 

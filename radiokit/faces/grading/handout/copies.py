@@ -41,7 +41,7 @@ def instructor_cells(
 
 
 def _cells(assignment: Assignment, language: str, checked_by: str, solution: Solution | None) -> list[Cell]:
-    checked_language(language)
+    checked_language(language, assignment.languages)
     cells = [intro(assignment, language, checked=bool(checked_by), solved=solution is not None)]
     setup = "import numpy as np\n"
     if checked_by:

@@ -63,7 +63,8 @@ class Check:
     """Judges functions of this process for an assignment; call it with one, or ask for ``all()``."""
 
     def __init__(self, assignment: Assignment, language: str, student: str) -> None:
-        self._assignment, self._language, self._student = assignment, checked_language(language), student
+        self._assignment, self._student = assignment, student
+        self._language = checked_language(language, assignment.languages)
 
     def __call__(self, function: Any) -> None:
         """Judge a function, and show what was found: HTML in a notebook, text elsewhere."""

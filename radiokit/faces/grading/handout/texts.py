@@ -17,20 +17,20 @@ Write the body of each function in place of `...`. Keep the names of the functio
 - Unless a question says otherwise: parameters are NumPy arrays of float64 of one length, or numbers, and the
   function returns an array of that length; angles are in radians, all else in SI units.
 - Functions are graded alone: what one of them needs must be defined or imported in this file. NumPy is there,
-  radiokit is not.
-- Your functions are graded on other numbers than those they are checked on here.""",
+  radiokit is not.""",
         "ru": """\
 Напишите тело каждой функции вместо `...`. Имена функций и их параметров не меняйте.
 
 - Если в вопросе не сказано иначе, параметры — массивы NumPy типа float64 одной длины или числа, а функция
   возвращает массив той же длины; углы — в радианах, остальное — в единицах СИ.
 - Функции проверяются отдельно: всё, что им нужно, должно быть определено или импортировано в этом файле.
-  NumPy доступен, radiokit — нет.
-- Оцениваются функции на других числах, не на тех, на которых они проверяются здесь.""",
+  NumPy доступен, radiokit — нет.""",
     },
     "check": {
-        "en": "- `check(function)` judges a function at once, and names the mistake where it knows it.",
-        "ru": "- `check(функция)` сразу проверяет функцию и называет ошибку, если узнаёт её.",
+        "en": "- Your functions are graded on other numbers than those they are checked on here.\n"
+        "- `check(function)` judges a function at once, and names the mistake where it knows it.",
+        "ru": "- Оцениваются функции на других числах, не на тех, на которых они проверяются здесь.\n"
+        "- `check(функция)` сразу проверяет функцию и называет ошибку, если узнаёт её.",
     },
     "points": {"en": "points: {points:g}", "ru": "баллы: {points:g}"},
     "beside": {

@@ -50,7 +50,7 @@ def read_solution(path: str | Path, assignment: Assignment) -> Solution:
     file = Path(path)
     try:
         text = file.read_text(encoding="utf-8")
-        tree = ast.parse(text)
+        tree = ast.parse(text, filename=file.name)
     except OSError:
         raise TargetError(f"no such file: {file}") from None
     except (SyntaxError, ValueError) as error:

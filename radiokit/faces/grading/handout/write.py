@@ -15,7 +15,7 @@ from radiokit.faces.grading.rehearsal import rehearsed
 from radiokit.faces.grading.words import checked_language
 from radiokit.facts.errors import TargetError
 
-__all__ = ["write_handout"]
+__all__ = ["write_handout", "write_out"]
 
 
 def write_handout(
@@ -61,7 +61,7 @@ def write_handout(
     """
     work = rehearsed(assignment)
     for language in languages:
-        checked_language(language)
+        checked_language(language, work.languages)
     solved = None if solution is None else read_solution(solution, work)
     own = Path(assignment).resolve() if Path(assignment).suffix == ".py" else None
     files: dict[Path, str] = {}
@@ -87,12 +87,26 @@ def write_handout(
                 "in an empty folder the lines that it needs are written"
             )
     for path, text in files.items():
-        if not force and path.exists() and path.read_bytes() != text.encode():
+        if not force and path.is_file() and path.read_bytes() != text.encode():
             raise TargetError(f"{path} is there and differs; --force writes over it")
     for path, text in files.items():
+        write_out(path, text)
+    return list(files)
+
+
+def write_out(path: Path, text: str) -> None:
+    """Write a file, and the folders that it is in.
+
+    Raises
+    ------
+    TargetError
+        When it cannot be written.
+    """
+    try:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(text.encode())
-    return list(files)
+    except OSError as error:
+        raise TargetError(f"cannot write {path}: {error.strerror}") from error
 
 
 def _copies(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 from collections.abc import Callable, Mapping
 from pathlib import PurePath
 from typing import Any
@@ -43,7 +45,8 @@ def own(what: str, function: Callable[..., Any], /, *arguments: Any, **named: An
     radiokit.facts.errors.AssignmentError: reference raised ZeroDivisionError: division by zero
     """
     try:
-        return function(*arguments, **named)
+        with contextlib.redirect_stdout(io.StringIO()):  # what is printed is the grade alone
+            return function(*arguments, **named)
     except Exception as error:
         said = str(error) if isinstance(error, RadiokitError) else f"{type(error).__name__}: {error}"
         raise AssignmentError(f"{what} raised {said}{line_of(error)}") from error

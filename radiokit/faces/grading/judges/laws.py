@@ -39,6 +39,10 @@ FEWER_EVALUATIONS = 100_000, 1_000_000
 class Laws:
     """Judges whether a function f(wi, wo) obeys the laws, or breaks those that it should.
 
+    It is called with unit vectors, z the normal, ``wi`` to the light and ``wo`` to the viewer: arrays (N, 3),
+    or one pair at a time if it cannot bear that. It gives f in sr⁻¹, without the cosine, and 0 where either
+    lies below the horizon.
+
     What it is judged by are evaluations, never a clock: the same function earns the same on any machine. A
     function of arrays is searched as finely as ``rk.check`` does; one of single pairs more coarsely, every
     1.2° or so in place of 0.15°. Where its albedo is then too near 1 to tell, it is asked once more, at
@@ -169,10 +173,12 @@ class Laws:
         except CallableError as error:
             return Finding(share=0.0, text=failed(error, language))
         kept = sum(self._weight(law) for law in self.laws if law not in wrong)
-        texts = [text for name, text in wrong.values() if name != "unjudged"]
+        said = {name: hint[language] for name, hint in hints.items()}
+        told = [(name, text) for name, text in wrong.values() if name != "unjudged"]
+        texts = [each for name, text in told for each in (text, said.get(name, ""))]
         unjudged = [law_name(law, language) for law, (name, _) in wrong.items() if name == "unjudged"]
         texts += [tell(language, "unjudged", laws=", ".join(unjudged))] if unjudged else []
-        texts += [refused] if refused else []
+        texts += [refused, said.get("not-the-model", "")] if refused else []
         if not texts and not like.text:
             texts = [f"{say(language, 'full')}: {'; '.join(right[law] for law in self.laws if law in right)}"]
         texts += [like.text, *remarks(tuple(notes), language)]

@@ -7,7 +7,7 @@ from typing import Any
 
 from radiokit.faces.grading.words import Words
 
-__all__ = ["LAW_NAMES", "LAW_SENTENCES", "law_name", "tell"]
+__all__ = ["LAW_NAMES", "LAW_SENTENCES", "LIKENESS_HINTS", "law_name", "tell"]
 
 LAW_SENTENCES: Mapping[str, Words] = {
     "slow": {
@@ -114,6 +114,16 @@ LAW_SENTENCES: Mapping[str, Words] = {
     },
 }
 """What is said of the laws; what any judge says stands in ``words``."""
+
+LIKENESS_HINTS: Mapping[str, Words] = {
+    "cosine-forgotten": {
+        "en": "Your values are 1/cos θ times too large, θ the light's angle: a division by that cosine is "
+        "one too many, or a factor cos θ is missing.",
+        "ru": "Ваши значения в 1/cos θ раз больше верных, где θ — угол падения: лишнее деление на этот "
+        "косинус или не хватает множителя cos θ.",
+    },
+}
+"""What is said of a BRDF where the catalogue speaks of an irradiance."""
 
 LAW_NAMES: Mapping[str, Words] = {
     "values": {"en": "its values", "ru": "значения"},

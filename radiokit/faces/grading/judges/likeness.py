@@ -14,7 +14,7 @@ from radiokit.faces.diagnosis.diagnose import diagnose
 from radiokit.faces.grading.isolation.protocol import Array
 from radiokit.faces.grading.judges.evidence import clause, hint_for
 from radiokit.faces.grading.judges.lawtexts import place_of
-from radiokit.faces.grading.judges.lawwords import tell
+from radiokit.faces.grading.judges.lawwords import LIKENESS_HINTS, tell
 from radiokit.faces.grading.judges.values import SURE
 from radiokit.faces.grading.words import say
 
@@ -54,6 +54,7 @@ def compared(
     can be recognised. Values that are not finite say nothing here, unless most are: then it hides what it is.
     A constant is a stranger unless one is asked for, and so is black.
     """
+    hints = {**LIKENESS_HINTS, **hints}
     count = -(-PAIRS // len(models))
     rows = [slice(k * count, (k + 1) * count) for k in range(len(models))]
     wi, wo = (np.concatenate([w] * len(models)) for w in pairs(count, meant[0], shift=rng.random(4)))

@@ -110,6 +110,11 @@ class Sampler:
     credit: Mapping[str, float] = field(default_factory=lambda: {"u-torn": 0.5, "horizon-not-clamped": 0.5})
     slowest: float = 1e-3
 
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """The names of the further functions without which nothing is judged."""
+        return () if self.aspect == "distribution" else (self.pdf,)
+
     def __post_init__(self) -> None:
         if self.aspect not in get_args(SamplerAspect):
             raise ParameterError("aspect", self.aspect, ", ".join(get_args(SamplerAspect)))

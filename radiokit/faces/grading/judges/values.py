@@ -236,7 +236,7 @@ class Values:
             name: numbers(own(f"variants[{name!r}]", variant, **given), f"variants[{name!r}]")
             for name, variant in self.variants.items()
         }
-        usual = (*CATALOGUE, *argument_mistakes(self._right, given, right))
+        usual = (*CATALOGUE, *argument_mistakes(self._right, given, right, self.variants))
 
         def reference(**inputs: Any) -> Any:
             try:  # out of its domain it may give anything, which then explains nothing
@@ -271,7 +271,7 @@ class Values:
             variants={name: values[lit] for name, values in others.items()},
             language=language,
             rtol=rtol,
-            catalogue=(*CATALOGUE, *argument_mistakes(self._right, lit_given, right[lit])),
+            catalogue=(*CATALOGUE, *argument_mistakes(self._right, lit_given, right[lit], self.variants)),
         )
         return partly if partly.suspicions else found
 
