@@ -99,8 +99,7 @@ def grade(
     work = load_assignment(assignment)
     taken = {name for each in work.questions for name in each.functions}
     if questions is not None:
-        wanted = {work.question(name).name for name in questions}
-        work = replace(work, questions=tuple(each for each in work.questions if each.name in wanted))
+        work = work.only(questions)
     checked_language(language)
     done = {question.name: question for question in earlier.questions} if earlier is not None else {}
     grades: list[QuestionGrade] = []
