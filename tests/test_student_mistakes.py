@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
 from radiokit.faces.grading.assignment import load_assignment, student_rng
@@ -238,3 +237,11 @@ def test_a_function_that_is_there_is_not_suggested_for_one_that_is_not() -> None
     content = b"def cosine_sample(u):\n    return u\n"
     found = grade("shading", "answers.py", content=content, questions=["cosine_sample"])
     assert found["cosine_sample"].parts[1].text == "defines no function cosine_pdf"
+
+
+def test_every_judge_says_that_a_power_is_no_caret() -> None:
+    sampler = finding("shading", "lobe_sample", "distribution", "return (1 - u)^(1 / (exponent + 1))")
+    values = finding("radiometry", "isotropic_irradiance", "ordinary", "return flux / distance^2")
+    for found in (sampler, values):
+        assert found.text.startswith("In Python a power is written x**2")
+        assert found.text.count("x**2") == 1

@@ -254,6 +254,4 @@ def _raised(
         hint = hints.get("out-of-range", {}).get(language, "")
         text = f"{text}. {sentence(hint)}" if hint else text
         return Finding(share=0.0, text=text, diagnosis="out-of-range", confidence=1.0)
-    if "bitwise_xor" in result.error or " for ^" in result.error:
-        return Finding(share=0.0, text=joined(say(language, "caret"), text))
     return Finding(share=0.0, text=text)
