@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import contextlib
-import copy
 import hashlib
 import io
 import json
 import sys
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
@@ -102,23 +100,6 @@ class Assignment:
                 return question
         also = [each for question in self.questions for each in question.functions]
         raise UnknownNameError("question", name, [question.name for question in self.questions], also)
-
-    def only(self, names: Iterable[str]) -> Assignment:
-        """Return it with some of its questions alone, whose hints may still be of variants of others.
-
-        Raises
-        ------
-        UnknownNameError
-            When there is no such question.
-
-        >>> [question.name for question in load_assignment("brdfs").only(["lambert"]).questions]
-        ['lambert']
-        """
-        wanted = {self.question(name).name for name in names}
-        part = copy.copy(self)
-        kept = tuple(question for question in self.questions if question.name in wanted)
-        object.__setattr__(part, "questions", kept)
-        return part
 
 
 def student_rng(
