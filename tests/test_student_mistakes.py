@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from radiokit.faces.grading.assignment import load_assignment, student_rng
@@ -216,6 +217,27 @@ def test_a_question_graded_alone_keeps_the_hints_of_others() -> None:
     found = grade("brdfs", "answers.py", content=content, questions=["half_cosine"])
     assert [each.name for each in found.questions] == ["half_cosine"]
     assert found.points == 2
+
+
+def test_a_decorator_may_pass_its_arguments_by_position() -> None:
+    content = b"""
+import functools
+import numpy as np
+def above(f):
+    @functools.wraps(f)
+    def g(wi, wo, *rest):
+        return np.where((wi[..., 2] > 0) & (wo[..., 2] > 0), f(wi, wo, *rest), 0)
+    return g
+@above
+def lambert(wi, wo, reflectance):
+    return reflectance / np.pi
+"""
+    assert grade("brdfs", "answers.py", content=content, questions=["lambert"]).score == 2
+
+
+def test_two_numbers_may_come_in_an_array() -> None:
+    pair = Here(lambda x: np.array([x, 2 * x]), "pair").call(np.asarray(1.0), outputs=2)
+    assert [float(each) for each in pair.values] == [1.0, 2.0]
 
 
 def test_what_is_missing_is_told_where_it_is() -> None:
