@@ -55,6 +55,17 @@ def inputs_of(question: Question, part: str, student: str = "") -> Mapping[str, 
     return judge_of(question, part).inputs(student_rng(ASSIGNMENT, question, found, student=student))
 
 
+FOR_HARD_INPUTS = {
+    "quadrant-lost",
+    "quadrant-folded",
+    "sign-of-step",
+    "cut-at-zero",
+    "step-of-the-first",
+    "step-of-the-mean",
+    "efficacy-rounded",
+}
+"""Variants that are right, or all but right, for ordinary inputs."""
+
 # What is asked
 
 
@@ -589,7 +600,7 @@ def test_every_variant_and_hint_is_found_in_both_languages(question: Question, s
     constants = {entry.name: entry for entry in CATALOGUE if entry.kind == "constant"}
     formulas: dict[str, Callable[..., Any]] = {}
     for name, variant in judge.variants.items():
-        if name not in ("quadrant-lost", "sign-of-step", "efficacy-rounded"):  # for hard inputs alone
+        if name not in FOR_HARD_INPUTS:
             formulas[name] = lambda *a, f=variant: f(**dict(zip(question.parameters, a, strict=True)))
     for name in set(question.hints) & set(constants):
         formulas[name] = lambda *a, n=name: FACTORS[n] * np.asarray(judge.reference(*a))

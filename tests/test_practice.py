@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+import signal
 import subprocess
 import sys
 import warnings
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -252,3 +254,41 @@ def test_a_script_shows_text_and_loads_no_notebook(tmp_path):
     )
     done = subprocess.run([sys.executable, file], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout, done.stderr) == (0, "cone\n  · not written yet\n", "")
+
+
+def test_an_endless_function_is_stopped_and_told_where():
+    def cone(half_angle):
+        while True:
+            half_angle = half_angle + 1
+
+    hasty = replace(HOMEWORK, questions=(replace(HOMEWORK.question("cone"), seconds=0.2),))
+    (line, *_) = rk.grading.practice(hasty).judged(cone).lines
+    assert line[0] is False
+    assert line[1].startswith("ordinary inputs: cone took longer than 0.2 s in all (line ")
+    assert "half_angle" in line[1] or "while True" in line[1]
+    russian = rk.grading.practice(hasty, language="ru").judged(cone)
+    assert "cone: выполнялась дольше 0.2 с в сумме" in str(russian)
+    assert signal.getitimer(signal.ITIMER_REAL)[0] == 0
+    assert signal.getsignal(signal.SIGALRM) == signal.SIG_DFL
+
+
+def test_another_timer_is_left_alone():
+    def twice(x):
+        return 2 * x
+
+    signal.setitimer(signal.ITIMER_REAL, 60)
+    try:
+        found = Here(twice, "twice", seconds=1e-6).call(np.ones(3))
+        assert found.ok
+        assert signal.getitimer(signal.ITIMER_REAL)[0] > 50
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+
+
+def test_an_interrupt_is_the_student_s_own(check):
+    def cone(half_angle):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        check.judged(cone)
+    assert signal.getitimer(signal.ITIMER_REAL)[0] == 0

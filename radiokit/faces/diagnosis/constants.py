@@ -90,6 +90,7 @@ ENTRIES: tuple[Misconception, ...] = (
         "Your answer is 4π times too large: a factor 1/4π is missing, such as that of I = Φ/4π, or a 4π is "
         "one too many.",
         "Ваш ответ в 4π раз больше верного: не хватает деления на 4π, как в I = Φ/4π, либо есть лишнее 4π.",
+        pairs=True,
     ),
     constant(
         "four-pi-too-few",
@@ -98,6 +99,7 @@ ENTRIES: tuple[Misconception, ...] = (
         "divided by it once too often.",
         "Ваш ответ в 4π раз меньше верного: не хватает множителя 4π, например телесного угла сферы, либо вы "
         "лишний раз на него разделили.",
+        pairs=True,
     ),
     constant(
         "two-pi-too-many",
@@ -106,6 +108,7 @@ ENTRIES: tuple[Misconception, ...] = (
         "over azimuth, or a 2π is one too many.",
         "Ваш ответ в 2π раз больше верного: не хватает множителя 1/2π, как в нормировке лепестка или среднем "
         "по азимуту, либо есть лишнее 2π.",
+        pairs=True,
     ),
     constant(
         "two-pi-too-few",
@@ -114,6 +117,7 @@ ENTRIES: tuple[Misconception, ...] = (
         "the division of uniform samples by the density 1/2π.",
         "Ваш ответ в 2π раз меньше верного: не хватает множителя 2π, например интеграла по азимуту или "
         "деления равномерных отсчётов на плотность 1/2π.",
+        pairs=True,
     ),
     constant(
         "sign-flipped",

@@ -137,7 +137,7 @@ def _variant_entries(variants: Any, catalogue: Sequence[Misconception]) -> list[
             if isinstance(problem.variants, Mapping):
                 yield Guess(problem.variants[name])
 
-        return structural(name, explain, english, russian)
+        return structural(name, explain, english, russian, pairs=True)
 
     return [entry(name) for name in variants]
 
@@ -149,6 +149,8 @@ def _fits(problem: Problem, entries: Iterable[Misconception], baseline: float) -
         best: _Fit | None = None
         for guess in entry.explain(problem):
             tried += 1
+            if not (entry.slack or entry.seen) and problem.forgives(guess.values):
+                continue
             share = 1.0 if entry.seen else problem.share(guess.values, entry.slack)
             if share >= SHARE and share > max(baseline, best.share if best else 0.0):
                 best = _Fit((entry,), guess, share, entry.prior)
@@ -158,23 +160,23 @@ def _fits(problem: Problem, entries: Iterable[Misconception], baseline: float) -
 
 
 def _pairs(problem: Problem, entries: Sequence[Misconception], baseline: float) -> tuple[list[_Fit], int]:
-    """Return the pairs of factors that explain the answers together, and how many were tried."""
+    """Return the pairs, one a factor, that explain the answers together, and how many were tried."""
     known = [
         (entry, guess)
         for entry in entries
         if entry.pairs
         for guess in entry.explain(problem)
-        if guess.factor is not None and np.all(np.isfinite(guess.factor))
+        if (entry.kind != "varying" or not _rests(problem, guess))
+        and np.all(np.isfinite(guess.values if guess.factor is None else guess.factor))
     ]
+    known.sort(key=lambda pair: pair[1].factor is not None)  # what is no factor is named first
     found, tried = [], 0
     for (first, one), (second, other) in combinations(known, 2):
-        assert one.factor is not None
-        assert other.factor is not None
-        if first.kind == second.kind == "constant":
-            continue  # together they are a constant that nobody has named
+        if first is second or other.factor is None or first.kind == second.kind == "constant":
+            continue  # two constants are together one that nobody has named, as is one of inputs that rest
         tried += 1
-        factor = one.factor * other.factor
-        values = factor * problem.reference
+        factor = None if one.factor is None else one.factor * other.factor
+        values = other.factor * one.values if factor is None else factor * problem.reference
         share = problem.share(values)
         if share >= SHARE and share > baseline:
             prior = PAIR_PRIOR * first.prior * second.prior
@@ -233,9 +235,16 @@ def _infer(
 
 def _is_still(problem: Problem, fit: _Fit) -> bool:
     """Return whether a fit rests on a factor that should vary and does not."""
-    if fit.guess.factor is None or all(entry.kind == "constant" for entry in fit.entries):
+    if all(entry.kind == "constant" for entry in fit.entries):
         return False
-    factor = fit.guess.factor[problem.reference != 0]
+    return _rests(problem, fit.guess)
+
+
+def _rests(problem: Problem, guess: Guess) -> bool:
+    """Return whether a guess is a factor that is one number at all of these inputs."""
+    if guess.factor is None:
+        return False
+    factor = guess.factor[problem.reference != 0]
     width = 2 * problem.resolution(problem.answer) * float(np.max(np.abs(factor), initial=0.0))
     return bool(factor.size == 0 or np.ptp(factor) <= width)
 
@@ -246,7 +255,8 @@ def _constant_note(problem: Problem, text: Mapping[str, str]) -> list[str]:
     if np.count_nonzero(telling) < 2:
         return []
     factor = float(np.median(problem.answer[telling] / problem.reference[telling]))
-    fits = factor != 0 and problem.share(factor * problem.reference) >= SHARE
+    values = factor * problem.reference
+    fits = factor != 0 and not problem.forgives(values) and problem.share(values) >= SHARE
     return [text["factor"].format(factor=factor)] if fits else []
 
 

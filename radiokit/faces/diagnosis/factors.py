@@ -22,16 +22,17 @@ def _normalisations(n: Array) -> dict[str, Array]:
         "no normalisation": np.ones_like(n),
         "(n+1)/(2π)": (n + 1) / (2 * math.pi),
         "(n+2)/(2π)": (n + 2) / (2 * math.pi),
+        "(n+2)/(4π)": (n + 2) / (4 * math.pi),
         "(n+2)/(8π)": (n + 2) / (8 * math.pi),
         "(n+8)/(8π)": (n + 8) / (8 * math.pi),
         "(n+2)(n+4)/(8π(2^(-n/2)+n))": (n + 2) * (n + 4) / (8 * math.pi * (np.exp2(-n / 2) + n)),
     }
     # Those that begin alike, with n + 2, differ by a constant that has entries of its own.
-    alike = {"(n+2)/(2π)", "(n+2)/(8π)"}
+    alike = {name for name in known if name.startswith("(n+2)/")}
     return {
         f"{used} ≠ {meant}": known[used] / known[meant]
         for used, meant in permutations(known, 2)
-        if {used, meant} != alike
+        if not {used, meant} <= alike
     }
 
 
@@ -92,7 +93,6 @@ ENTRIES: tuple[Misconception, ...] = (
         "You gave degrees to a function that takes radians: convert by numpy.radians first.",
         "Вы подали градусы функции, которая ждёт радианы: сначала пересчитайте через numpy.radians.",
         needs=("theta", "cosine", "sine"),
-        pairs=False,
     ),
     varying(
         "distance-not-squared",
@@ -243,7 +243,6 @@ ENTRIES: tuple[Misconception, ...] = (
         "one asked).",
         "Вы нормировали лепесток Фонга или Блинна не тем множителем (ваш ≠ нужный).",
         needs=("exponent",),
-        pairs=False,
     ),
     varying(
         "viewer-cosine-forgotten",

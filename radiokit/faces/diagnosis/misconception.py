@@ -50,7 +50,7 @@ class Misconception:
     slack : float
         A relative deviation that the misconception itself leaves open.
     pairs : bool
-        Whether it may be one of two at once; only factors can.
+        Whether it may be one of two at once: two factors, or a factor and what does not look at the answer.
     seen : bool
         Whether it is seen, not inferred: then it has no rivals, and right numbers do not excuse it.
 
@@ -127,7 +127,8 @@ def structural(
     needs: tuple[str, ...] = (),
     prior: float = 1.0,
     slack: float = 0.0,
+    pairs: bool = False,
     seen: bool = False,
 ) -> Misconception:
     """Return a misconception that is no factor."""
-    return Misconception(name, en, ru, explain, "structural", needs, prior, slack, seen=seen)
+    return Misconception(name, en, ru, explain, "structural", needs, prior, slack, pairs, seen)

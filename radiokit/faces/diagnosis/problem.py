@@ -189,6 +189,11 @@ class Problem:
             not self.sampled or not values.any() or self.share(values) > 0
         )
 
+    def forgives(self, values: Array) -> bool:
+        """Return whether numbers that are not sampled would be right: then they explain nothing."""
+        off = np.abs(values - self.reference)
+        return not self.sampled and bool(np.all(off <= self.tolerance(self.reference)))
+
     def varies(self, values: Array) -> bool:
         """Return whether ``values`` differ by more than rounding and chance could."""
         spread = self.tolerance(values)

@@ -84,7 +84,8 @@ def _constant(problem: Problem) -> Iterable[Guess]:
 
 
 def _offset(problem: Problem) -> Iterable[Guess]:
-    if problem.answer.size >= FEWEST and problem.varies(problem.reference):
+    varies = problem.varies(problem.reference) and problem.varies(problem.answer)
+    if problem.answer.size >= FEWEST and varies:
         offset = float(np.median(problem.answer - problem.reference))
         # The offset must stand out of the reference's rounding, or cancellation invents it.
         if abs(offset) > 10 * float(np.max(problem.tolerance(problem.reference))):
@@ -132,6 +133,7 @@ ENTRIES: tuple[Misconception, ...] = (
         "The angle reached the function in a wrong unit: it takes radians, once converted.",
         "Угол попал в функцию не в тех единицах: нужны радианы, пересчитанные один раз.",
         needs=("theta",),
+        pairs=True,
     ),
     structural(
         "horizon-not-clamped",

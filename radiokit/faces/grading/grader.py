@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -124,10 +124,9 @@ def grade(
             if question.name in done:
                 grades.append(done[question.name])
             else:
-                others = [name for name in names if name in question.functions or name not in taken]
                 with sandbox.within(question.seconds):  # what hangs costs it once
                     absent = {
-                        name: _absent(sandbox, name, loaded, others, problems, language)
+                        name: _absent(sandbox, name, loaded, names, taken, problems, language)
                         for name in question.functions
                     }
                     found, review, numbers = _judged(
@@ -227,16 +226,25 @@ def _absent(
     sandbox: Sandbox,
     function: str,
     loaded: Result,
-    names: list[str],
+    names: Sequence[str],
+    taken: Collection[str],
     problems: tuple[str, ...],
     language: str,
 ) -> Finding | None:
-    """Return why a function cannot be graded at all, if so."""
+    """Return why a function cannot be graded at all, if so.
+
+    Of the submission's own ``names`` one is suggested that is like this function, and more so than like any
+    other that is asked for, ``taken``.
+    """
     if not loaded.ok:
         return Finding(share=0.0, text=problems[0])
-    if function in names or sandbox.facts(function).facts.get("callable"):
+    if sandbox.facts(function).facts.get("callable"):
         return None
-    close = difflib.get_close_matches(function, names, n=1, cutoff=0.6)
+    others = [name for name in names if name not in taken]
+    owner = next((name for name in others if sandbox.facts(f"{name}.{function}").facts.get("callable")), "")
+    own = [name for name in others if difflib.get_close_matches(name, sorted(taken), n=1) == [function]]
+    close = difflib.get_close_matches(function, own, n=1)
     guess = say(language, "did-you-mean", name=close[0]) if close else ""
+    guess = say(language, "method", name=f"{owner}.{function}", where=owner) if owner else guess
     text = say(language, "no-function", function=function, guess=guess)
     return Finding(share=0.0, text="; ".join([text, *problems[:1]]))

@@ -16,6 +16,7 @@ JUDGED = frozenset(
         "argument-ignored",
         "arguments-swapped",
         "below",
+        "beside-others",
         "constant-answer",
         "constant-rounded",
         "energy-holds",

@@ -9,7 +9,7 @@ import re
 from functools import cache
 
 from radiokit.faces.grading.isolation.protocol import plain_text
-from radiokit.faces.grading.words import say
+from radiokit.faces.grading.words import say, sentence
 from radiokit.facts.errors import CallableError, RadiokitError
 
 __all__ = ["OUTCOMES", "did", "told", "translated"]
@@ -177,7 +177,9 @@ def did(language: str, function: str, error: str) -> str:
     >>> did("ru", "cone", "took longer than 2 s")
     'cone: выполнялась дольше 2 с'
     """
-    return say(language, "call", function=function, error=translated(language, error))
+    text = say(language, "call", function=function, error=translated(language, error))
+    caret = "bitwise_xor" in error or " for ^" in error
+    return f"{sentence(say(language, 'caret'))} {text}" if caret else text
 
 
 def told(language: str, error: RadiokitError) -> str:

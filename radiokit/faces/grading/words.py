@@ -28,15 +28,15 @@ SENTENCES: Mapping[str, Words] = {
         "ru": "теряются значащие цифры: относительная ошибка достигает {error}, а допускается {rtol:g}",
     },
     "float32": {
-        "en": "this is computed in float32: the relative error reaches {error}, and {rtol:g} is allowed; "
+        "en": "this is computed in {kind}: the relative error reaches {error}, and {rtol:g} is allowed; "
         "use float64",
-        "ru": "вычислено в float32: относительная ошибка достигает {error}, а допускается {rtol:g}; "
+        "ru": "вычислено в {kind}: относительная ошибка достигает {error}, а допускается {rtol:g}; "
         "используйте float64",
     },
     "float32-range": {
-        "en": "the formula is right, but numbers leave the range of float32 at {bad} of {count} {noun}: "
+        "en": "the formula is right, but numbers leave the range of {kind} at {bad} of {count} {noun}: "
         "use float64",
-        "ru": "формула верна, но числа выходят за пределы float32 ({bad} из {count} {noun}): "
+        "ru": "формула верна, но числа выходят за пределы {kind} ({bad} из {count} {noun}): "
         "используйте float64",
     },
     "constant-rounded": {
@@ -55,10 +55,10 @@ SENTENCES: Mapping[str, Words] = {
         "ru": "ответ равен {value} для всех входных данных: он от них не зависит",
     },
     "zero": {
-        "en": "the answer is 0 for all inputs: look for // in place of /, a rounding, or a condition that is "
-        "never true",
-        "ru": "ответ равен 0 для всех входных данных: поищите // вместо /, округление или условие, которое "
-        "никогда не выполняется",
+        "en": "the answer is 0 for all inputs: look for // in place of /, a rounding, a wrong unit, or a "
+        "condition that is never true",
+        "ru": "ответ равен 0 для всех входных данных: поищите // вместо /, округление, не те единицы или "
+        "условие, которое никогда не выполняется",
     },
     "not-finite": {
         "en": "gives {value} at {bad} of {count} {noun}",
@@ -84,6 +84,12 @@ SENTENCES: Mapping[str, Words] = {
         "en": "returns complex numbers, and real ones are asked for",
         "ru": "возвращает комплексные числа, а нужны вещественные",
     },
+    "beside-others": {
+        "en": "right for one input at a time, and wrong for arrays: an answer depends on the other inputs, "
+        "as where a maximum, a sum or a condition is of the whole array",
+        "ru": "верно для каждого набора данных отдельно, но не для массивов: ответ зависит от соседних "
+        "данных, как если максимум, сумма или условие берутся по всему массиву",
+    },
     "not-repeatable": {
         "en": "gives other values when it is asked again in another order: it must depend on its arguments "
         "alone",
@@ -105,6 +111,10 @@ SENTENCES: Mapping[str, Words] = {
         "en": "your numbers fit two mistakes at once: {names}",
         "ru": "такие числа дают две ошибки сразу: {names}",
     },
+    "besides": {
+        "en": "besides, 0 is right at {bad} of {count} {noun} where you give another number",
+        "ru": "кроме того, для {bad} из {count} {noun} верен 0, а у вас другое число",
+    },
     "one-of": {"en": "one of these: {names}", "ru": "одно из: {names}"},
     "perhaps": {"en": "perhaps: {names}", "ru": "возможно: {names}"},
     "caret": {
@@ -117,6 +127,10 @@ SENTENCES: Mapping[str, Words] = {
         "ru": "функция {function} не определена{guess}",
     },
     "did-you-mean": {"en": "; is it {name}?", "ru": "; может быть, это {name}?"},
+    "method": {
+        "en": "; {name} is a method of the class {where}: define the function outside of any class",
+        "ru": "; {name} — метод класса {where}: определите функцию вне классов",
+    },
     "problem": {
         "en": "{where} raised {raised}: {message}",
         "ru": "{where}: ошибка {raised}: {message}",

@@ -109,7 +109,7 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
                 wrong.PHONG_ORIGINAL,
                 Laws(
                     expected={"reciprocity": "violated", "energy": "violated"},
-                    parameters=({"exponent": 10.0, "coefficient": 0.5},),
+                    parameters=({"exponent": 10.0, "coefficient": 0.3},),
                     reference=brdf.phong_original,
                     variants=wrong.PHONG_ORIGINAL,
                 ),
@@ -234,7 +234,7 @@ $10^{-9}$, а для значений меньше $10^{-9}$ [1/ср] — люб
                 brdf.mixed_values,
                 wrong.MIXED,
                 Laws(
-                    parameters=({"diffuse": 0.9, "specular": 0.6, "exponent": 20.0},),
+                    parameters=({"diffuse": 0.9, "specular": 0.8, "exponent": 20.0},),
                     reference=brdf.mixed,
                     variants=wrong.MIXED,
                     least=0.5,

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from radiokit.faces.grading.assignment import Assignment
 from radiokit.faces.grading.assignments._shading.estimates import FURNACE, GLOSSY, WINDOW
-from radiokit.faces.grading.assignments._shading.lights import DIRECT_LIGHT, MIS_WEIGHT, SPHERE_IRRADIANCE
+from radiokit.faces.grading.assignments._shading.lights import DIRECT_LIGHT, SPHERE_IRRADIANCE
 from radiokit.faces.grading.assignments._shading.samplers import COSINE_SAMPLE, LOBE_SAMPLE
+from radiokit.faces.grading.assignments._shading.weight import MIS_WEIGHT
 
 __all__ = ["ASSIGNMENT"]
 

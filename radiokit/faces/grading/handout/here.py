@@ -6,6 +6,7 @@ import contextlib
 import functools
 import io
 import linecache
+import math
 import random
 import sys
 import time
@@ -20,6 +21,7 @@ import numpy as np
 from radiokit.contracts.blackbox import as_bsdf
 from radiokit.contracts.bsdf import BSDF
 from radiokit.faces.grading.finding import Mode
+from radiokit.faces.grading.handout.timing import Clock, LateError
 from radiokit.faces.grading.isolation.answers import RefusedError, Taker
 from radiokit.faces.grading.isolation.protocol import Array, plain_text
 from radiokit.faces.grading.isolation.result import Result
@@ -29,6 +31,8 @@ __all__ = ["Here"]
 
 LIMIT = 1 << 28
 """How many bytes an answer may have."""
+LONGEST = 3600.0
+"""How long calls may take [s] at most."""
 KEPT = 2000
 """How many letters of what is printed are kept."""
 
@@ -44,6 +48,8 @@ class Here:
     name : str
     namespace : mapping
         Where its other functions are found.
+    seconds : float
+        How long all its calls may take, where signals can end them; then ``LateError`` is raised.
     printed, raised, where : str
         What it printed first, what it raised last, and where, with the line that did.
 
@@ -57,9 +63,13 @@ class Here:
     function: Callable[..., Any] | None
     name: str
     namespace: Mapping[str, Any] = field(default_factory=dict)
+    seconds: float = math.inf
     printed: str = ""
     raised: str = ""
     where: str = ""
+
+    def __post_init__(self) -> None:
+        self._clock = Clock(min(self.seconds, LONGEST))
 
     def call(self, *arrays: Array, mode: Mode = "batch", outputs: int = 1, seed: int | None = None) -> Result:
         """Call it with copies; whatever it does, but for what interrupts, a result comes back."""
@@ -69,7 +79,9 @@ class Here:
         found: dict[str, Any] = {}
         with self._quiet(seed) as printed:
             try:
-                found = {"values": tuple(self._called(arrays, mode, outputs))}
+                with self._clock.running():
+                    values = tuple(self._called(arrays, mode, outputs))
+                found = {"values": values}
             except RefusedError as error:
                 found = {"error": plain_text(error)}
             except (Exception, SystemExit) as error:
@@ -78,6 +90,11 @@ class Here:
                 found["where"], line = self._where(error.__traceback__)
                 self.raised = found["error"]
                 self.where = f"{found['where']}: {line}" if line else found["where"]
+            except LateError as error:
+                self.raised = f"took longer than {self.seconds:g} s in all"
+                place, line = self._where(error.__traceback__)
+                self.where = f"{place}: {line}" if line else place
+                raise
         text = printed.getvalue()[:KEPT]
         self.printed = self.printed or text
         return Result(**found, seconds=time.monotonic() - began, output=text)
@@ -95,7 +112,7 @@ class Here:
     def other(self, name: str) -> Here:
         """Return another function from beside it."""
         found = self.namespace.get(name)
-        return Here(found if callable(found) else None, name, self.namespace)
+        return Here(found if callable(found) else None, name, self.namespace, self.seconds)
 
     def _called(self, arrays: tuple[Array, ...], mode: Mode, outputs: int) -> list[Array]:
         assert self.function is not None

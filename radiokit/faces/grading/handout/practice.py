@@ -16,9 +16,10 @@ from radiokit.faces.grading.assignment import Assignment, load_assignment, stude
 from radiokit.faces.grading.finding import Finding
 from radiokit.faces.grading.handout.here import Here
 from radiokit.faces.grading.handout.texts import tell
+from radiokit.faces.grading.handout.timing import LateError
 from radiokit.faces.grading.isolation.protocol import plain_text
 from radiokit.faces.grading.question import Question
-from radiokit.faces.grading.russian import told, translated
+from radiokit.faces.grading.russian import did, told, translated
 from radiokit.faces.grading.words import checked_language, say
 from radiokit.facts.errors import AssignmentError, CallableError, TargetError
 
@@ -102,7 +103,9 @@ class Check:
         if all(missing.values()):
             lines = ((None, tell(self._language, missing[question.name])),)
             return Checked(name=question.name, right=None, lines=lines, findings={})
-        callees = {name: Here(namespace.get(name), name, namespace) for name in question.functions}
+        callees = {
+            name: Here(namespace.get(name), name, namespace, question.seconds) for name in question.functions
+        }
         findings: dict[str, Finding] = {}
         shown: list[tuple[bool | None, str]] = []
         for part in question.parts:
@@ -120,6 +123,9 @@ class Check:
                 finding = part.judge.judge(
                     callee, rng, language=self._language, hints=question.hints, shown=True
                 )
+            except LateError:
+                late = f"took longer than {question.seconds:g} s in all"
+                finding = Finding(share=0.0, text=did(self._language, name, callee.raised or late))
             except (CallableError, TargetError) as error:
                 finding = Finding(share=0.0, text=told(self._language, error))
             except AssignmentError as error:
@@ -154,6 +160,7 @@ def practice(assignment: str | Path | Assignment, *, language: str = "en", stude
 
     ``check(function)`` runs the function in this process, on the parts that the student may see, with other
     inputs than any that are graded, and shows what is right, what is wrong, and the mistake if it is known.
+    A function that takes longer than it may when it is graded is stopped, but not on Windows.
     ``check.all()`` does it for all questions. Nothing is isolated: it is for one's own code.
 
     Parameters

@@ -40,6 +40,8 @@ class Taker:
         if result is None:
             raise RefusedError("returned None: is a return statement missing?")
         if count > 1:
+            if isinstance(result, ndarray) and result.shape == (count,):
+                result = list(result)
             if not isinstance(result, tuple | list):
                 wanted = ", ".join("abcdefgh"[:count])
                 raise RefusedError(f"returned one value where {count} are wanted, as in return {wanted}")

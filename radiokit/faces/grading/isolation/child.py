@@ -172,10 +172,13 @@ class _Child:
         # copies may be written into; arrays without dimensions are Python's own numbers
         given = [array.copy() if array.ndim else array.item() for array in arrays]
         mode, keywords, outputs = request["mode"], request["parameters"], request["outputs"]
+        rest = []
+        if keywords and self._signature.by_position(function, keywords):
+            rest, keywords = list(keywords.values()), {}
         taker = self._answers.Taker(request["limit"])
         lengths = [len(array) for array in arrays if array.ndim]
         if mode == "batch" or not lengths:
-            return list(taker.outputs(function(*given, **keywords), outputs))
+            return list(taker.outputs(function(*given, *rest, **keywords), outputs))
         rows = []
         for i in range(lengths[0]):
             row = [
@@ -183,7 +186,7 @@ class _Child:
                 for value, array in zip(given, arrays, strict=True)
             ]
             try:
-                rows.append(taker.outputs(function(*row, **keywords), outputs))
+                rows.append(taker.outputs(function(*row, *rest, **keywords), outputs))
             except self._answers.RefusedError:
                 raise
             except BaseException as error:

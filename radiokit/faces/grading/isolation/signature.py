@@ -9,7 +9,7 @@ import inspect
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-__all__ = ["listed", "renamed"]
+__all__ = ["by_position", "listed", "renamed"]
 
 PAIR = 2
 """How many parameters are directions, which are passed by position."""
@@ -53,3 +53,18 @@ def renamed(parameters: Sequence[tuple[str, bool]], given: Mapping[str, Any]) ->
             own = dict(zip(strangers, names, strict=True))
             return {own.get(name, name): value for name, value in given.items()}
     return dict(given)
+
+
+def by_position(function: Callable[..., Any], given: Mapping[str, Any]) -> bool:
+    """Return whether a function takes what has names by position alone, as a decorator's ``*args`` does.
+
+    >>> by_position(lambda wi, wo, *rest: 0, {"n": 10.0}), by_position(lambda wi, wo, n: 0, {"n": 10.0})
+    (True, False)
+    """
+    try:
+        found = inspect.signature(function, follow_wrapped=False).parameters
+    except Exception:  # a submission's object may raise anything when it is looked at
+        return False
+    kinds = {each.kind for each in found.values()}
+    stars = inspect.Parameter.VAR_POSITIONAL in kinds and inspect.Parameter.VAR_KEYWORD not in kinds
+    return stars and not any(name in found for name in given)

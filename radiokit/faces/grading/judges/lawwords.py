@@ -87,7 +87,6 @@ LAW_SENTENCES: Mapping[str, Words] = {
         "en": "is right at most pairs of directions and wrong at {bad} of {count}, as at {place}",
         "ru": "верна почти всюду, но не на {bad} из {count} пар направлений, например при {place}",
     },
-    "perhaps": {"en": "perhaps: {name}", "ru": "возможно: {name}"},
     "factor": {
         "en": "is {factor} times the function that is asked for",
         "ru": "равна нужной функции, умноженной на {factor}",

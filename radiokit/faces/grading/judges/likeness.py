@@ -12,11 +12,9 @@ from radiokit.checks.probes import pairs
 from radiokit.contracts.bsdf import BSDF
 from radiokit.faces.diagnosis.diagnose import diagnose
 from radiokit.faces.grading.isolation.protocol import Array
-from radiokit.faces.grading.judges.evidence import clause, hint_for
+from radiokit.faces.grading.judges.explained import SURE, worded
 from radiokit.faces.grading.judges.lawtexts import place_of
 from radiokit.faces.grading.judges.lawwords import LIKENESS_HINTS, tell
-from radiokit.faces.grading.judges.values import SURE
-from radiokit.faces.grading.words import say
 
 __all__ = ["Likeness", "compared"]
 
@@ -97,13 +95,13 @@ def compared(
             first = found.first
             if first.name == "wrong-at-few":
                 return _at_few(answer, right, wi, wo, rtol or 1e-6, language)
-            text = hint_for(first, hints, language)
+            text = worded(found, hints, language, shown=True)
             return Likeness(name=first.name, confidence=round(first.confidence, 2), text=text)
+        if found.suspicions:  # that cannot be told apart: the catalogue cannot do so either
+            break
     assert found is not None
     if found.suspicions:
-        likely = [clause(hint_for(each, hints, language)) for each in found.suspicions[:2]]
-        key, text = ("perhaps", likely[0]) if len(likely) == 1 else ("", " / ".join(likely))
-        return Likeness(text=tell(language, key, name=text) if key else say(language, "one-of", names=text))
+        return Likeness(text=worded(found, hints, language, shown=True))
     factor = _factor(answer, right, rtol or 1e-6)
     if factor is None:
         return Likeness(stranger=True)

@@ -5,28 +5,24 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
-from radiokit.faces.diagnosis.catalogue import CATALOGUE
-from radiokit.faces.diagnosis.diagnose import diagnose
-from radiokit.faces.diagnosis.result import Diagnosis
 from radiokit.faces.grading.finding import Callee, Finding
 from radiokit.faces.grading.isolation.protocol import Array
 from radiokit.faces.grading.isolation.result import Result
-from radiokit.faces.grading.judges.arguments import argument_mistakes
 from radiokit.faces.grading.judges.asking import asked, close, fitted, is_extreme, is_right
-from radiokit.faces.grading.judges.digits import DOUBLE, FEWEST, SINGLE, lost
-from radiokit.faces.grading.judges.evidence import at, clause, guesses, hint_for, joined, wrong_at
+from radiokit.faces.grading.judges.digits import lost
+from radiokit.faces.grading.judges.evidence import at, hint_for, joined, wrong_at
 from radiokit.faces.grading.judges.exact import Reference, as_function, no_inputs
+from radiokit.faces.grading.judges.explained import diagnosed, exactly, worded, words_of
 from radiokit.faces.grading.judges.given import (
     check_functions,
     check_shares,
     drawn,
     is_within,
-    numbers,
     own,
     truth,
 )
@@ -36,8 +32,6 @@ from radiokit.facts.errors import ParameterError
 
 __all__ = ["Values", "hint_for"]
 
-SURE = 0.5
-"""From which confidence on a misconception is named alone."""
 NAMES = {
     "float32": "single-precision",
     "float32-range": "single-precision",
@@ -150,7 +144,17 @@ class Values:
             return Finding(share=0.0, text=joined(problem))
         good = close(answer, right, allowed)
         if not good.all():
-            return self._wrong(answer, right, given, good, language=language, hints=hints, shown=shown)
+            found = self._wrong(answer, right, given, good, language=language, hints=hints, shown=shown)
+            if (
+                not found.diagnosis
+                and mode == "batch"
+                and max((each.ndim for each in given.values()), default=0) == 1
+            ):
+                alone = callee.call(*given.values(), mode="scalar", seed=seed)
+                if is_right(alone, right, allowed):
+                    text = joined(say(language, "beside-others"), found.text)
+                    return replace(found, text=text, diagnosis="beside-others", confidence=1.0)
+            return found
         turned = [array[::-1] if array.ndim else array for array in given.values()]
         if any(array.ndim for array in turned):
             right = right[::-1]
@@ -188,8 +192,14 @@ class Values:
             (s for r, s in self.loose.items() if close(answer, right, self.allowed(right, r)).all()),
             default=0.0,
         )
+        allowed = self.allowed(right, self.rtol)
         terms = 0.0 if self.terms is None else own("terms", self.terms, **given)
         key, values = lost(answer, right, given, good, atol=self.atol, rtol=self.rtol, terms=terms)
+        slip = exactly(answer, right, given, self.variants, allowed) if key == "imprecise" else ""
+        if slip:  # near the right numbers by the inputs' doing, and another formula
+            full, _ = wrong_at(answer, right, given, good, language, shown=shown)
+            text = joined(words_of(slip, hints, language), full)
+            return Finding(share=share, text=text, diagnosis=slip, confidence=1.0)
         if key:
             name = NAMES.get(key, key)
             said = say(language, key, **values)
@@ -200,80 +210,35 @@ class Values:
             text = joined(said, hint)
             return Finding(share=share, text=text, diagnosis=name, confidence=1.0)
         full, count = wrong_at(answer, right, given, good, language, shown=shown)
-        found = self._diagnosed(answer.astype(float), right, given, language) if right.ndim == 1 else None
-        if found is None or found.first is None:
-            notes = "; ".join(found.notes) if found is not None and shown and not found.right else ""
-            return Finding(share=share, text=joined(full, notes))
+        if right.ndim > 1:
+            return Finding(share=share, text=joined(full))
+        found, besides = diagnosed(
+            answer,
+            right,
+            given,
+            self._right,
+            context=self.context,
+            variants=self.variants,
+            rtol=self.rtol,
+            language=language,
+        )
         first = found.first
+        if first is None:
+            notes = "; ".join(found.notes) if shown and not found.right else ""
+            return Finding(share=share, text=joined(full, notes))
         if first.name == "wrong-at-few":  # the evidence says more
             return Finding(share=share, text=joined(full), diagnosis=first.name)
-        if first.confidence < SURE or found.ambiguous:
-            likely = [clause(hint_for(each, hints, language, shown=shown)) for each in found.suspicions[:2]]
-            text = guesses(likely, language)
-        elif " + " in first.name and first.name not in hints:
-            catalogue = {entry.name: entry.hint(language) for entry in CATALOGUE}
-            both = [hints.get(each, {}).get(language, catalogue[each]) for each in first.name.split(" + ")]
-            text = say(language, "both", names=" + ".join(map(clause, both)))
-        else:
-            text = hint_for(first, hints, language, shown=shown)
+        text = worded(found, hints, language, shown=shown)
+        if besides:
+            text = joined(text, say(language, "besides", bad=besides, count=len(right)))
         best = joined(text, full)
+        earned = math.prod(self.credit.get(name, 0.0) for name in first.name.split(" + "))
         return Finding(
-            share=max(share, self.credit.get(first.name, 0.0)),
+            share=max(share, self.credit.get(first.name, earned) * (0.5 if besides else 1.0)),
             text=best if len(best) > len(joined(text)) else joined(text, count),
             diagnosis=first.name,
             confidence=round(first.confidence, 2),
         )
-
-    def _diagnosed(
-        self, answer: Array, right: Array, given: Mapping[str, Array], language: str
-    ) -> Diagnosis | None:
-        """Return what explains the answers or, if nothing does, those where the right one is not 0."""
-        size = len(right)
-        context = dict(own("context", self.context, **given)) if self.context is not None else {}
-        every = {**given, **context}
-        columns = {name: value for name, value in every.items() if _is_column(name, value, size)}
-        others = {
-            name: numbers(own(f"variants[{name!r}]", variant, **given), f"variants[{name!r}]")
-            for name, variant in self.variants.items()
-        }
-        usual = (*CATALOGUE, *argument_mistakes(self._right, given, right, self.variants))
-
-        def reference(**inputs: Any) -> Any:
-            try:  # out of its domain it may give anything, which then explains nothing
-                values = np.asarray(self._right(**{n: inputs.get(n, given[n]) for n in given}), dtype=float)
-            except Exception:
-                return np.full(size, math.nan)
-            return values if values.shape == right.shape else np.full(size, math.nan)
-
-        found: Diagnosis | None = None
-        rtol = min(max(self.rtol, SINGLE if answer.dtype == np.float32 else DOUBLE), 0.1)
-        lit = right != 0
-        for variants in ([others] if others else []) + [reference]:
-            found = diagnose(
-                answer,
-                right,
-                inputs=columns,
-                variants=variants,
-                language=language,
-                rtol=rtol,
-                catalogue=usual,
-            )
-            if found.right or found.suspicions:
-                return found
-        if lit.all() or np.count_nonzero(lit & (answer != 0)) < FEWEST:
-            return found
-        some = {name: value[lit] if np.ndim(value) else value for name, value in columns.items()}
-        lit_given = {name: value[lit] if value.ndim else value for name, value in given.items()}
-        partly = diagnose(
-            answer[lit],
-            right[lit],
-            inputs=some,
-            variants={name: values[lit] for name, values in others.items()},
-            language=language,
-            rtol=rtol,
-            catalogue=(*CATALOGUE, *argument_mistakes(self._right, lit_given, right[lit], self.variants)),
-        )
-        return partly if partly.suspicions else found
 
 
 def _raised(
@@ -289,12 +254,4 @@ def _raised(
         hint = hints.get("out-of-range", {}).get(language, "")
         text = f"{text}. {sentence(hint)}" if hint else text
         return Finding(share=0.0, text=text, diagnosis="out-of-range", confidence=1.0)
-    if "bitwise_xor" in result.error or " for ^" in result.error:
-        return Finding(share=0.0, text=joined(say(language, "caret"), text))
     return Finding(share=0.0, text=text)
-
-
-def _is_column(name: str, value: Any, size: int) -> bool:
-    """Return whether the diagnosis can take an input."""
-    fits = np.shape(value) in ((), (size,)) or (name in ("wi", "wo") and np.shape(value) == (size, 3))
-    return fits and bool(np.isfinite(value).all())

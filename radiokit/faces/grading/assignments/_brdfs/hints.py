@@ -23,6 +23,45 @@ HINTS: Mapping[str, Words] = {
         "en": "You took the angle between wi and wo themselves: mirror one of them about the normal first.",
         "ru": "Вы взяли угол между самими wi и wo: сначала отразите один из них относительно нормали.",
     },
+    "all-three-turned": {
+        "en": "You changed all three signs: about the normal z, only x and y change theirs.",
+        "ru": "Вы сменили все три знака: при отражении относительно нормали z знак меняют только x и y.",
+    },
+    "horizon-clamped": {
+        "en": "You gave 0 below the horizon: here the horizon plays no part.",
+        "ru": "Под горизонтом у вас 0, а в этом вопросе горизонт не важен.",
+    },
+    "reflection-with-plus": {
+        "en": "r = 2 (n · wo) n − wo: you added wo.",
+        "ru": "r = 2 (n · wo) n − wo: вы прибавили wo, а его нужно вычесть.",
+    },
+    "reflection-without-two": {
+        "en": "r = 2 (n · wo) n − wo: the 2 is missing.",
+        "ru": "r = 2 (n · wo) n − wo: пропущена двойка.",
+    },
+    "angle-without-mirror": {
+        "en": "Two mistakes at once: you gave the angle and not its cosine, and nothing is mirrored.",
+        "ru": "Две ошибки сразу: это угол, а не его косинус, и ничто не отражено.",
+    },
+    "half-of-difference": {
+        "en": "You took wi − wo: the half vector is that of the sum, wi + wo.",
+        "ru": "Вы взяли wi − wo: полувектор — это направление суммы wi + wo.",
+    },
+    "half-over-square": {
+        "en": "You divided by the square of the length of wi + wo: take the root.",
+        "ru": "Вы разделили на квадрат длины wi + wo: извлеките корень.",
+    },
+    "mean-of-angles": {
+        "en": "(θi + θo)/2 is the half vector's angle only where wi and wo are on one meridian: use wi + wo.",
+        "ru": "(θi + θo)/2 — угол полувектора, лишь если wi и wo на одном меридиане: возьмите wi + wo.",
+    },
+    **{
+        f"power-of-two-{name}": {
+            "en": "Your constant is right but for the power of two: what is 1/√2 to the power of n?",
+            "ru": "Константа верна, кроме степени двойки: чему равна n-я степень числа 1/√2?",
+        }
+        for name in ("sign", "whole", "forgotten", "negated")
+    },
     "mirror-of-x-alone": {
         "en": "You changed the sign of x alone: about the normal z, both x and y change theirs.",
         "ru": "Вы сменили знак только у x: при отражении относительно нормали z знак меняют и x, и y.",
@@ -73,9 +112,10 @@ HINTS: Mapping[str, Words] = {
         "ru": "Вы взяли угол от зеркального направления, как Фонг: у Блинна это угол полувектора с нормалью.",
     },
     "half-from-viewer": {
-        "en": "You took the angle between the half vector and wo: it is that between the half vector and "
-        "the normal.",
-        "ru": "Вы взяли угол между полувектором и wo, а нужен угол между полувектором и нормалью.",
+        "en": "You took the angle between the half vector and wi or wo, which is one: it is that between the "
+        "half vector and the normal.",
+        "ru": "Вы взяли угол между полувектором и wi или wo (он один и тот же), а нужен угол между "
+        "полувектором и нормалью.",
     },
     "sign-kept": {
         "en": "You kept the sign of the difference: take its absolute value.",
@@ -119,6 +159,34 @@ HINTS: Mapping[str, Words] = {
     "diffuse-alone-limited": {
         "en": "You limited the diffuse share alone: divide both by their sum.",
         "ru": "Вы ограничили только диффузную долю: делить на сумму нужно обе.",
+    },
+    "diffuse-not-divided": {
+        "en": "You divided the specular share alone: where k_d + k_s > 1, divide both by their sum.",
+        "ru": "Вы разделили только зеркальную долю: если k_d + k_s > 1, на сумму делят обе.",
+    },
+    "specular-not-divided": {
+        "en": "You divided the diffuse share alone: where k_d + k_s > 1, divide both by their sum.",
+        "ru": "Вы разделили только диффузную долю: если k_d + k_s > 1, на сумму делят обе.",
+    },
+    "divided-in-turn": {
+        "en": "You divided the second share by a sum that the first had left changed: keep the sum first.",
+        "ru": "Вторую долю вы делите на сумму с уже изменённой первой: сначала запомните сумму.",
+    },
+    "sum-of-values": {
+        "en": "You compared k_d/π + k_s with 1: the shares are k_d and k_s, without π.",
+        "ru": "Вы сравнили с 1 сумму k_d/π + k_s: доли — это k_d и k_s, без π.",
+    },
+    "lobe-with-one": {
+        "en": "Your lobe has the constant (n + 1)/(2π): a BRDF's is (n + 2)/(2π), as in phong.",
+        "ru": "У вашего лепестка константа (n + 1)/(2π): у ДФО она (n + 2)/(2π), как в phong.",
+    },
+    "neither-limited-nor-with-pi": {
+        "en": "Two mistakes at once: the shares are not limited, and the diffuse part lacks 1/π.",
+        "ru": "Две ошибки сразу: доли не ограничены, и в диффузной части не хватает 1/π.",
+    },
+    "neither-limited-nor-normalised": {
+        "en": "Two mistakes at once: the shares are not limited, and the lobe is not normalised.",
+        "ru": "Две ошибки сразу: доли не ограничены, и лепесток не нормирован.",
     },
     "diffuse-without-pi": {
         "en": "The diffuse part lacks 1/π.",

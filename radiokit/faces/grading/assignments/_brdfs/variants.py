@@ -43,6 +43,12 @@ def _of_half(of: str) -> Cosine:
     return cosine
 
 
+def _half_of_difference(wi: Array, wo: Array) -> Array:
+    h = wi - wo
+    length = np.sqrt(np.sum(h * h, axis=-1))
+    return h[..., 2] / np.where(length > 0, length, 1.0)
+
+
 def _clamped(c: Array) -> Array:
     return np.maximum(c, 0.0)
 
@@ -99,6 +105,16 @@ def _blinn_phong(c: Array, wi: Array, wo: Array, *, exponent: Array) -> Array:
     return (n + 2) * (n + 4) / (8 * np.pi * (np.exp2(-n / 2) + n)) * c**n
 
 
+def _blinn_phong_with(power: Callable[[Array], Array]) -> Lobe:
+    """Return the lobe with something else in place of 2^(−n/2)."""
+
+    def lobe(c: Array, wi: Array, wo: Array, *, exponent: Array) -> Array:
+        n = exponent
+        return (n + 2) * (n + 4) / (8 * np.pi * (power(n) + n)) * c**n
+
+    return lobe
+
+
 def _times(lobe: Lobe, factor: Callable[[Array, Array], Array]) -> Function:
     """Return a lobe about the mirror direction times a function of both cosines."""
 
@@ -108,16 +124,30 @@ def _times(lobe: Lobe, factor: Callable[[Array, Array], Array]) -> Function:
     return _brdf(other, mirror_cosine)
 
 
-def _mixed(combine: Callable[[Array, Array, Array], Array], normalised: bool = True) -> Function:
-    def lobe(c: Array, wi: Array, wo: Array, *, diffuse: Array, specular: Array, exponent: Array) -> Array:
-        scale = (exponent + 2) / (2 * np.pi) if normalised else 1.0
-        return combine(diffuse, specular, scale * c**exponent)
+def _phong_scale(n: Array) -> Array:
+    return (n + 2) / (2 * np.pi)
 
-    return _brdf(lobe, mirror_cosine)
+
+def _mixed(
+    combine: Callable[[Array, Array, Array], Array],
+    scale: Callable[[Array], Array] = _phong_scale,
+    cosine: Cosine = mirror_cosine,
+) -> Function:
+    def lobe(c: Array, wi: Array, wo: Array, *, diffuse: Array, specular: Array, exponent: Array) -> Array:
+        return combine(diffuse, specular, scale(exponent) * c**exponent)
+
+    return _brdf(lobe, cosine)
 
 
 def _whole(kd: Array, ks: Array) -> Array:
     return np.maximum(1.0, kd + ks)
+
+
+def _in_turn(kd: Array, ks: Array, lobe: Array) -> Array:
+    """Return the mixture if the second share is divided by a sum that holds the new first one."""
+    first = kd / _whole(kd, ks)
+    second = np.where(kd + ks > 1, ks / (first + ks), ks)
+    return first / np.pi + second * lobe
 
 
 def _angle(c: Array) -> Array:
@@ -134,6 +164,11 @@ MIRROR_COSINE: Mapping[str, Function] = {
     "mirror-of-x-alone": lambda wi, wo: _clamped(_dot((-1, 1, 1))(wi, wo)),
     "mirror-of-y-alone": lambda wi, wo: _clamped(_dot((1, -1, 1))(wi, wo)),
     "half-for-mirror": lambda wi, wo: _clamped(_of_half("normal")(wi, wo)),
+    "all-three-turned": lambda wi, wo: _clamped(_dot((-1, -1, -1))(wi, wo)),
+    "horizon-clamped": _brdf(lambda c, wi, wo: c, mirror_cosine),
+    "reflection-with-plus": lambda wi, wo: _clamped(_dot((1, 1, 3))(wi, wo)),
+    "reflection-without-two": lambda wi, wo: _clamped(_dot((-1, -1, 0))(wi, wo)),
+    "angle-without-mirror": lambda wi, wo: _angle(_dot((1, 1, 1))(wi, wo)),
     "angle-for-cosine": lambda wi, wo: _angle(_dot((-1, -1, 1))(wi, wo)),
     "angle-in-degrees": lambda wi, wo: np.degrees(_angle(_dot((-1, -1, 1))(wi, wo))),
 }
@@ -151,11 +186,27 @@ PHONG: Mapping[str, Function] = _about_mirror(_phong)
 HALF_COSINE: Mapping[str, Function] = {
     "mirror-for-half": _brdf(lambda c, wi, wo: c, _dot((-1, -1, 1))),
     "half-from-viewer": _brdf(lambda c, wi, wo: c, _of_half("viewer")),
+    "half-of-difference": _brdf(lambda c, wi, wo: _half_of_difference(wi, wo), mirror_cosine),
+    "half-over-square": _brdf(
+        lambda c, wi, wo: c / np.sqrt(np.sum((wi + wo) ** 2, axis=-1)), _of_half("normal")
+    ),
+    "mean-of-angles": _brdf(
+        lambda c, wi, wo: np.cos((_angle(wi[..., 2]) + _angle(wo[..., 2])) / 2), _of_half("normal")
+    ),
     "angle-for-cosine": _brdf(lambda c, wi, wo: _angle(c), _of_half("normal")),
     "angle-in-degrees": _brdf(lambda c, wi, wo: np.degrees(_angle(c)), _of_half("normal")),
 }
 
 BLINN_PHONG: Mapping[str, Function] = {
+    **{
+        name: _brdf(_blinn_phong_with(power), _of_half("normal"))
+        for name, power in {
+            "power-of-two-sign": lambda n: np.exp2(n / 2),
+            "power-of-two-whole": lambda n: np.exp2(-n),
+            "power-of-two-forgotten": lambda n: 0.0 * n,
+            "power-of-two-negated": lambda n: -np.exp2(-n / 2),
+        }.items()
+    },
     "mirror-for-half": _brdf(_blinn_phong, _dot((-1, -1, 1))),
     "half-from-viewer": _brdf(_blinn_phong, _of_half("viewer")),
     **_powers(_blinn_phong, half_cosine),
@@ -178,5 +229,19 @@ MIXED: Mapping[str, Function] = {
     "specular-alone-limited": _mixed(lambda kd, ks, lobe: kd / np.pi + np.minimum(ks, 1 - kd) * lobe),
     "diffuse-alone-limited": _mixed(lambda kd, ks, lobe: np.minimum(kd, 1 - ks) / np.pi + ks * lobe),
     "diffuse-without-pi": _mixed(lambda kd, ks, lobe: (kd + ks * lobe) / _whole(kd, ks)),
-    "lobe-not-normalised": _mixed(lambda kd, ks, lobe: (kd / np.pi + ks * lobe) / _whole(kd, ks), False),
+    "diffuse-not-divided": _mixed(lambda kd, ks, lobe: kd / np.pi + ks * lobe / _whole(kd, ks)),
+    "specular-not-divided": _mixed(lambda kd, ks, lobe: kd / np.pi / _whole(kd, ks) + ks * lobe),
+    "divided-in-turn": _mixed(_in_turn),
+    "sum-of-values": _mixed(lambda kd, ks, lobe: (kd / np.pi + ks * lobe) / _whole(kd / np.pi, ks)),
+    "lobe-with-one": _mixed(
+        lambda kd, ks, lobe: (kd / np.pi + ks * lobe) / _whole(kd, ks), lambda n: (n + 1) / (2 * np.pi)
+    ),
+    "half-for-mirror": _mixed(
+        lambda kd, ks, lobe: (kd / np.pi + ks * lobe) / _whole(kd, ks), cosine=_of_half("normal")
+    ),
+    "neither-limited-nor-with-pi": _mixed(lambda kd, ks, lobe: kd + ks * lobe),
+    "neither-limited-nor-normalised": _mixed(lambda kd, ks, lobe: kd / np.pi + ks * lobe, lambda n: 1.0),
+    "lobe-not-normalised": _mixed(
+        lambda kd, ks, lobe: (kd / np.pi + ks * lobe) / _whole(kd, ks), lambda n: 1.0
+    ),
 }

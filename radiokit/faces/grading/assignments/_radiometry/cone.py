@@ -57,6 +57,9 @@ $10^{-9}$.
         "sine-for-cosine": lambda half_angle: 2 * math.pi * (1 - np.sin(half_angle)),
         "small-angle": lambda half_angle: math.pi * half_angle**2,
         "projected-solid-angle": lambda half_angle: math.pi * np.sin(half_angle) ** 2,
+        "cosine-added": lambda half_angle: 2 * math.pi * (1 + np.cos(half_angle)),
+        "sine-not-integrated": lambda half_angle: 2 * math.pi * half_angle,
+        "square-degrees": lambda half_angle: np.degrees(np.degrees(cap_solid_angle(half_angle))),
         "full-angle": lambda half_angle: 4 * math.pi * np.sin(half_angle / 4) ** 2,
         "angle-unit": lambda half_angle: 4 * math.pi * np.sin(np.radians(half_angle) / 2) ** 2,
     },
@@ -77,6 +80,18 @@ $10^{-9}$.
         "sine-for-cosine": {
             "en": "You have sin α where cos α belongs: the integral of sin θ is −cos θ",
             "ru": "У вас sin α вместо cos α: первообразная sin θ равна −cos θ",
+        },
+        "cosine-added": {
+            "en": "1 + cos α is the rest of the sphere: the integral of sin θ from 0 to α is 1 − cos α",
+            "ru": "1 + cos α — это остальная часть сферы: интеграл sin θ от 0 до α равен 1 − cos α",
+        },
+        "sine-not-integrated": {
+            "en": "You left out sin θ: dω = sin θ dθ dφ, so that the integral over θ is 1 − cos α, not α",
+            "ru": "Вы пропустили sin θ: dω = sin θ dθ dφ, поэтому интеграл по θ равен 1 − cos α, а не α",
+        },
+        "square-degrees": {
+            "en": "Your answer is in square degrees, (180/π)² times too large: steradians are asked for",
+            "ru": "Ваш ответ дан в квадратных градусах, он в (180/π)² раз больше: нужны стерадианы",
         },
         "small-angle": {
             "en": "πα² is the area of a flat disk: it is the solid angle of narrow cones only",

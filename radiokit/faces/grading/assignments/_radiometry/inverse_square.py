@@ -56,6 +56,9 @@ too.
     ordinary=_bulbs,
     hard=far_and_near,
     variants={
+        "parentheses-forgotten": lambda flux, distance: flux / 4 * math.pi * distance**2,
+        "multiplied": lambda flux, distance: flux * 4 * math.pi * distance**2,
+        "centimetres": lambda flux, distance: 1e-4 * _isotropic(flux, distance),
         "volume-for-area": lambda flux, distance: flux / (4 / 3 * math.pi * distance**3),
     },
     credit={"four-pi-too-many": 0.25, "doubled": 0.25, "four-too-many": 0.25},
@@ -63,6 +66,18 @@ too.
         "pi-too-many": {
             "en": "You forgot π: the flux is spread over the sphere's area, 4πd²",
             "ru": "Вы забыли π: поток проходит через всю сферу площадью 4πd²",
+        },
+        "parentheses-forgotten": {
+            "en": "You multiplied by π d²: x / 4 * π * d² does so, and x / (4 * π * d²) does not",
+            "ru": "Вы умножили на π d²: так делает x / 4 * π * d², а нужно x / (4 * π * d²)",
+        },
+        "multiplied": {
+            "en": "You multiplied by the sphere's area: the flux is divided by it",
+            "ru": "Вы умножили на площадь сферы: поток на неё делят",
+        },
+        "centimetres": {
+            "en": "Your answer is 10⁴ times too small: the distance is in metres already, as W/m² need it",
+            "ru": "Ответ в 10⁴ раз меньше: расстояние уже в метрах, и ответ нужен в Вт/м²",
         },
         "volume-for-area": {
             "en": "You divided by the volume of the sphere: the flux passes through its area, 4πd²",

@@ -82,8 +82,12 @@ $$E = \frac{I \cos\theta}{d^2}, \qquad E = 0, \text{ если источник �
     ordinary=_lamps,
     hard=_grazing,
     terms=lambda intensity, distance, theta_deg: intensity / distance**2,
-    variants={},
-    credit={"horizon-not-clamped": 0.5},
+    variants={
+        "pi-rounded": lambda intensity, distance, theta_deg: np.maximum(
+            0.0, intensity * np.cos(theta_deg * 3.14 / 180) / distance**2
+        ),
+    },
+    credit={"horizon-not-clamped": 0.5, "pi-rounded": 0.5},
     hints={
         "sine-forgotten": {
             "en": "You divided by sin θ, as the cotangent does: the cosine alone belongs there",

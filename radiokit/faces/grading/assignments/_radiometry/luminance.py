@@ -51,6 +51,12 @@ def _sums(exitance: FloatArray, efficiency: FloatArray) -> FloatArray:
     return result
 
 
+def _even(y: FloatArray, step: FloatArray) -> FloatArray:
+    """Return the integral by trapezoids of one width in each row (N, 1)."""
+    result: FloatArray = EFFICACY / math.pi * np.sum((y[:, 1:] + y[:, :-1]) / 2 * step, axis=-1)
+    return result
+
+
 def _ends(wavelength: FloatArray, y: FloatArray, end: int) -> FloatArray:
     """Return the integral by the value at one end of each step, 0 or 1."""
     steps = np.abs(np.diff(wavelength, axis=-1))
@@ -112,12 +118,44 @@ $$M_v = K_m \int V(\lambda)\, M_\lambda \, d\lambda, \qquad K_m = 683\ \text{л�
         "sign-of-step": lambda wavelength, exitance, efficiency: (
             _luminance(wavelength, exitance, efficiency) * np.sign(wavelength[:, 1] - wavelength[:, 0])
         ),
+        "step-of-the-first": lambda wavelength, exitance, efficiency: _even(
+            exitance * efficiency, wavelength[:, 1:2] - wavelength[:, 0:1]
+        ),
+        "step-of-the-mean": lambda wavelength, exitance, efficiency: _even(
+            exitance * efficiency, np.mean(np.diff(wavelength), axis=-1, keepdims=True)
+        ),
+        "cut-at-zero": lambda wavelength, exitance, efficiency: np.where(
+            wavelength[:, 1] > wavelength[:, 0], _luminance(wavelength, exitance, efficiency), 0.0
+        ),
+        "pi-and-efficacy-forgotten": lambda wavelength, exitance, efficiency: (
+            math.pi / EFFICACY * _luminance(wavelength, exitance, efficiency)
+        ),
         "efficacy-rounded": lambda wavelength, exitance, efficiency: (
             683.002 / EFFICACY * _luminance(wavelength, exitance, efficiency)
         ),
     },
-    credit={"pi-too-many": 0.5, "watts-for-lumens": 0.5, "rectangle-rule": 0.5},
+    credit={
+        "pi-too-many": 0.5,
+        "watts-for-lumens": 0.5,
+        "rectangle-rule": 0.5,
+        "pi-and-efficacy-forgotten": 0.25,
+    },
     hints={
+        **{
+            name: {
+                "en": "The steps of these wavelengths are not even: each trapezoid has a width of its own",
+                "ru": "Шаг сетки здесь переменный: у каждой трапеции своя ширина",
+            }
+            for name in ("step-of-the-first", "step-of-the-mean")
+        },
+        "cut-at-zero": {
+            "en": "Where the wavelengths fall, dλ is negative: take |dλ|, and do not cut the sum off at 0",
+            "ru": "Там, где длины волн убывают, dλ отрицательно: возьмите |dλ|, а не обнуляйте сумму",
+        },
+        "pi-and-efficacy-forgotten": {
+            "en": "You forgot both K_m = 683 lm/W and the division by π, L_v = M_v/π",
+            "ru": "Вы забыли и K_m = 683 лм/Вт, и деление на π: L_v = M_v/π",
+        },
         "one-end": {
             "en": "You took the value at one end of each step: a trapezoid takes the mean of both ends",
             "ru": "Вы взяли значение на одном конце шага: в трапеции берут среднее двух концов",

@@ -110,6 +110,23 @@ $3\cdot10^{-14}$.
         "mean-for-sum": lambda albedo, radiance, cosine, solid_angle: (
             _reflected(albedo, radiance, cosine, solid_angle) / radiance.shape[-1]
         ),
+        "last-light-forgotten": lambda albedo, radiance, cosine, solid_angle: _reflected(
+            albedo, radiance[:, :-1], cosine[:, :-1], solid_angle[:, :-1]
+        ),
+        "first-light-forgotten": lambda albedo, radiance, cosine, solid_angle: _reflected(
+            albedo, radiance[:, 1:], cosine[:, 1:], solid_angle[:, 1:]
+        ),
+        "last-light-alone": lambda albedo, radiance, cosine, solid_angle: _reflected(
+            albedo, radiance[:, -1:], cosine[:, -1:], solid_angle[:, -1:]
+        ),
+        "first-light-alone": lambda albedo, radiance, cosine, solid_angle: _reflected(
+            albedo, radiance[:, :1], cosine[:, :1], solid_angle[:, :1]
+        ),
+        "sum-clamped": lambda albedo, radiance, cosine, solid_angle: np.maximum(
+            _reflected(albedo, radiance, cosine, solid_angle)
+            - _reflected(albedo, radiance, -cosine, solid_angle),
+            0.0,
+        ),
         "albedo-forgotten": lambda albedo, radiance, cosine, solid_angle: _reflected(
             0 * albedo + 1, radiance, cosine, solid_angle
         ),
@@ -126,6 +143,26 @@ $3\cdot10^{-14}$.
         "horizon-not-clamped": {
             "en": "Lights below the horizon are subtracted: leave out the terms of negative cosine",
             "ru": "Источники под горизонтом вычитаются: отбросьте слагаемые с отрицательным косинусом",
+        },
+        "last-light-forgotten": {
+            "en": "The last light is missing from your sum: range(K) ends at K − 1 by itself",
+            "ru": "В сумме нет последнего источника: range(K) и так кончается на K − 1",
+        },
+        "first-light-forgotten": {
+            "en": "The first light is missing from your sum: indices begin at 0",
+            "ru": "В сумме нет первого источника: индексы начинаются с 0",
+        },
+        "last-light-alone": {
+            "en": "Only the last light counts in your answer: add each term, += in place of =",
+            "ru": "В ответ вошёл только последний источник: слагаемые нужно прибавлять, += вместо =",
+        },
+        "first-light-alone": {
+            "en": "Only the first light counts in your answer: does return stand inside the loop?",
+            "ru": "В ответ вошёл только первый источник: не стоит ли return внутри цикла?",
+        },
+        "sum-clamped": {
+            "en": "You clamped the whole sum: leave out each term of negative cosine by itself",
+            "ru": "Вы обнулили всю сумму: отбрасывать нужно каждое слагаемое с отрицательным косинусом",
         },
         "absolute-value": {
             "en": "You took |cos θ|: lights below the horizon give nothing, take max(0, cos θ)",

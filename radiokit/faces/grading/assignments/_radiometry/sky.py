@@ -73,6 +73,7 @@ $1 - \cos^2\alpha$ теряет цифры; относительная ошиб�
         "cosine-of-the-edge": lambda radiance, half_angle: (
             4 * math.pi * radiance * np.sin(half_angle / 2) ** 2 * np.cos(half_angle)
         ),
+        "full-angle": lambda radiance, half_angle: _sky(radiance, half_angle / 2),
         "small-angle": lambda radiance, half_angle: math.pi * radiance * half_angle**2,
         "angle-unit": lambda radiance, half_angle: _sky(radiance, np.radians(half_angle)),
     },
@@ -101,6 +102,10 @@ $1 - \cos^2\alpha$ теряет цифры; относительная ошиб�
         "cosine-of-the-edge": {
             "en": "The angle differs within the cone: LΩ cos α takes the edge for all of it",
             "ru": "Угол внутри конуса меняется: LΩ cos α берёт его на краю, а нужен интеграл",
+        },
+        "full-angle": {
+            "en": "The angle is the half angle already, from the axis to the edge: do not halve it again",
+            "ru": "Угол — это уже половина раствора, от оси до края: не делите его ещё раз на 2",
         },
         "small-angle": {
             "en": "πLα² holds for narrow cones only: it is sin²α",

@@ -89,6 +89,9 @@ $10^{17}$, где разность $1 - \cos^{n+1}\alpha$ теряет цифр�
         "divisor-forgotten": lambda intensity, exponent, half_angle: (
             (exponent + 1) * _spot(intensity, exponent, half_angle)
         ),
+        "one-outside-the-exponent": lambda intensity, exponent, half_angle: (
+            -2 * math.pi * intensity * np.cos(half_angle) ** exponent / (exponent + 1)
+        ),
         "angle-unit": lambda intensity, exponent, half_angle: _spot(
             intensity, exponent, np.radians(half_angle)
         ),
@@ -110,6 +113,10 @@ $10^{17}$, где разность $1 - \cos^{n+1}\alpha$ теряет цифр�
         "power-off-by-one": {
             "en": "The integral of cosⁿθ sin θ is −cosⁿ⁺¹θ/(n + 1): n + 1 stands in both places",
             "ru": "Первообразная cosⁿθ sin θ равна −cosⁿ⁺¹θ/(n + 1): n + 1 стоит в обоих местах",
+        },
+        "one-outside-the-exponent": {
+            "en": "The 1 stands outside of the power: x**n+1 is x**n plus 1, write x**(n + 1)",
+            "ru": "Единица осталась вне степени: x**n+1 — это x**n плюс 1, нужно x**(n + 1)",
         },
         "divisor-forgotten": {
             "en": "You forgot to divide by n + 1: the integral of cosⁿθ sin θ is −cosⁿ⁺¹θ/(n + 1)",

@@ -64,6 +64,17 @@ def _signed(a: FloatArray, b: FloatArray, c: FloatArray, *, quadrant: bool = Tru
     return result
 
 
+def _by_formula(a: FloatArray, b: FloatArray, c: FloatArray, *, pairs: tuple[int, int, int]) -> FloatArray:
+    """Return twice the arctangent, where the dot products a·b, b·c, c·a have lengths so paired, 0 for a."""
+    corners = (a, b, c)
+    lengths = [np.sqrt(dot(corner, corner)) for corner in corners]
+    below = lengths[0] * lengths[1] * lengths[2]
+    for k, length in enumerate(pairs):
+        below = below + dot(corners[k], corners[(k + 1) % 3]) * lengths[length]
+    result: FloatArray = 2 * np.arctan2(np.abs(dot(a, np.cross(b - a, c - a))), below)
+    return result
+
+
 def _flat(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:
     result: FloatArray = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=-1)
     return result
@@ -121,6 +132,10 @@ $\Omega$ больше $\pi$: следите за четвертью. Относ�
     variants={
         "sign-of-winding": _signed,
         "quadrant-lost": lambda a, b, c: _signed(a, b, c, quadrant=False),
+        "quadrant-folded": lambda a, b, c: np.abs(_signed(a, b, c, quadrant=False)),
+        "fraction-upside-down": lambda a, b, c: np.pi - _triangle(a, b, c),
+        "lengths-exchanged": lambda a, b, c: _by_formula(a, b, c, pairs=(0, 1, 2)),
+        "lengths-exchanged-otherwise": lambda a, b, c: _by_formula(a, b, c, pairs=(1, 2, 0)),
         "area-for-solid-angle": _flat,
         "area-over-distance-squared": _flat_over_square,
         "small-angle": _flat_projected,
@@ -134,6 +149,21 @@ $\Omega$ больше $\pi$: следите за четвертью. Относ�
         "quadrant-lost": {
             "en": "The denominator is negative where Ω > π: arctan loses the quadrant, arctan2 keeps it",
             "ru": "При Ω > π знаменатель отрицателен: arctan теряет четверть, arctan2 её сохраняет",
+        },
+        "quadrant-folded": {
+            "en": "The denominator is negative where Ω > π: |arctan| gives 2π − Ω there, arctan2 gives Ω",
+            "ru": "При Ω > π знаменатель отрицателен: |arctan| даёт там 2π − Ω, а arctan2 даёт Ω",
+        },
+        "fraction-upside-down": {
+            "en": "Your fraction is upside down: it is arctan2(numerator, denominator)",
+            "ru": "Дробь перевёрнута: нужно arctan2(числитель, знаменатель)",
+        },
+        **{
+            name: {
+                "en": "In the denominator each dot product goes with the length of the third corner: (a·b) c",
+                "ru": "В знаменателе скалярное произведение умножают на длину третьего вектора: (a·b) c",
+            }
+            for name in ("lengths-exchanged", "lengths-exchanged-otherwise")
         },
         "area-for-solid-angle": {
             "en": "You gave the area of the triangle [m²]: a solid angle is an area on the unit sphere",

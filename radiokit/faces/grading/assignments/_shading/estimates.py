@@ -107,6 +107,12 @@ def _glossy_uniform(exponent: Any, zenith: Any, side: Any) -> float:
     return (n + 2) ** 2 * (even + odd) - float(_glossy(n, a, b)) ** 2
 
 
+def _lobe_twice(exponent: Any, zenith: Any, side: Any) -> Any:
+    """Return the mean of f L cos θ over directions of the lobe's density, by which it is not divided."""
+    whole = zenith / (2 * exponent + 3) + side / (2 * exponent + 2)
+    return (exponent + 1) * (exponent + 2) / (2 * math.pi) * whole
+
+
 _GLOSSY: dict[str, Any] = {
     "exact": False,
     "alike": False,
@@ -117,6 +123,8 @@ _GLOSSY: dict[str, Any] = {
         "cosine-twice": lambda exponent, zenith, side: (
             (exponent + 2) * (zenith / (exponent + 4) + side / (exponent + 3))
         ),
+        "pdf-forgotten": lambda exponent, zenith, side: _lobe_twice(exponent, zenith, side),
+        "uniform-density": lambda exponent, zenith, side: 2 * math.pi * _lobe_twice(exponent, zenith, side),
         "lobe-normalisation": lambda exponent, zenith, side: (
             _glossy(exponent, zenith, side) * (exponent + 1) / (exponent + 2)
         ),
@@ -166,6 +174,14 @@ GLOSSY = Question(
             "en": "You divided by cosⁿθ · (n+1)²/(2π(n+2)) or the like: the density of the lobe is (n+1)/2π "
             "cosⁿθ.",
             "ru": "Плотность лепестка неверно нормирована: она равна (n+1)/2π cosⁿθ.",
+        },
+        "pdf-forgotten": {
+            "en": "You did not divide by the density (n+1)/2π cosⁿθ of your directions.",
+            "ru": "Вы не разделили на плотность (n+1)/2π cosⁿθ ваших направлений.",
+        },
+        "uniform-density": {
+            "en": "You sample the lobe and divide by 1/2π, the density of uniform directions.",
+            "ru": "Вы выбираете направления по лепестку, а делите на 1/2π — плотность равномерных.",
         },
         "lobe-normalisation": {
             "en": "The BRDF has the factor (n+2)/2π, and the density (n+1)/2π: they do not cancel.",
@@ -224,6 +240,13 @@ _WINDOW: dict[str, Any] = {
         "cosine-forgotten": _over_window(lambda x, z, d: x / d**3),
         "distance-forgotten": _over_window(lambda x, z, d: x * z / d**2),
         "distance-not-squared": _over_window(lambda x, z, d: x * z / d**3),
+        "both-cosines-forgotten": _over_window(lambda x, z, d: 1 / d**2),
+        "cosines-exchanged": _over_window(lambda x, z, d: z * z / d**4),
+        "distance-of-the-wall": _over_window(lambda x, z, d: z / (x * d**2)),
+        "half-window": lambda distance, width, height: _window(distance, 2 * width, height) / 2,
+        "distance-and-pdf-forgotten": lambda distance, width, height: (
+            _over_window(lambda x, z, d: x * z / d**2)(distance, width, height) / (width * height)
+        ),
         "pdf-of-area": _over_window(lambda x, z, d: z / d),
         "pdf-forgotten": lambda distance, width, height: _window(distance, width, height) / (width * height),
     },
@@ -260,6 +283,26 @@ WINDOW = Question(
         "pdf-forgotten": {
             "en": "You did not divide by the density 1/A: multiply the mean by the window's area.",
             "ru": "Вы не разделили на плотность 1/A: умножьте среднее на площадь окна.",
+        },
+        "both-cosines-forgotten": {
+            "en": "Both cosines are missing, that at the floor and that at the window.",
+            "ru": "Нет обоих косинусов: ни у пола, ни у окна.",
+        },
+        "cosines-exchanged": {
+            "en": "You took the cosine at the floor, z/d, twice: that at the window is distance/d.",
+            "ru": "Вы дважды взяли косинус у пола, z/d, а у окна он равен distance/d.",
+        },
+        "distance-of-the-wall": {
+            "en": "You divided by `distance`², that of the wall: d is the distance of the sampled point.",
+            "ru": "Вы разделили на `distance`², до стены: d — это расстояние до точки окна.",
+        },
+        "half-window": {
+            "en": "Your y runs from 0 to `width`: the window lies on both sides, |y| ≤ width/2.",
+            "ru": "У вас y меняется от 0 до `width`, а окно лежит по обе стороны: |y| ≤ width/2.",
+        },
+        "distance-and-pdf-forgotten": {
+            "en": "Both are missing: the division by d² and that by the density 1/A.",
+            "ru": "Не хватает обоих делений: и на d², и на плотность 1/A.",
         },
         "pdf-of-area": {
             "en": "You took the density per area, 1/A, for one per solid angle: cos θ'/d² is missing.",

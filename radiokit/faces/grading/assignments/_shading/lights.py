@@ -11,7 +11,7 @@ from radiokit.faces.grading.judges.values import Values
 from radiokit.faces.grading.question import Part, Question
 from radiokit.physics.view_factor import differential_to_sphere
 
-__all__ = ["DIRECT_LIGHT", "MIS_WEIGHT", "SPHERE_IRRADIANCE"]
+__all__ = ["DIRECT_LIGHT", "SPHERE_IRRADIANCE"]
 
 LIGHTS = 5
 SECONDS = 20.0
@@ -49,6 +49,7 @@ def _sum_of(
     clamp: Callable[[Any], Any] = lambda z: np.maximum(z, 0.0),
     brdf: bool = True,
     share: float = 1.0,
+    lights: slice = slice(None),
 ) -> Callable[..., Any]:
     """Return the sum over lights, or one with a misconception in it."""
 
@@ -56,7 +57,8 @@ def _sum_of(
         distance = np.sqrt(np.sum(positions**2, axis=-1))
         cosine = clamp(positions[..., 2] / distance)
         lit = np.sign(cosine) * np.abs(cosine) ** cosine_power
-        return share * np.sum((f if brdf else 1.0) * intensities * lit / distance**distance_power, axis=-1)
+        terms = (f if brdf else 1.0) * intensities * lit / distance**distance_power
+        return share * np.sum(terms[..., lights], axis=-1)
 
     return total
 
@@ -71,6 +73,14 @@ _SLIPS_OF_SUM: Mapping[str, Callable[..., Any]] = {
     "distance-cubed": _sum_of(1.0, 3.0),
     "brdf-forgotten": _sum_of(brdf=False),
     "mean-of-lights": _sum_of(share=1 / LIGHTS),
+    "sum-clamped": lambda f, positions, intensities: np.maximum(
+        _sum_of(clamp=lambda z: z)(f, positions, intensities), 0.0
+    ),
+    "cosine-and-distance": _sum_of(0.0, 1.0),
+    "last-light-forgotten": _sum_of(lights=slice(None, -1)),
+    "first-light-forgotten": _sum_of(lights=slice(1, None)),
+    "last-light-alone": _sum_of(lights=slice(-1, None)),
+    "first-light-alone": _sum_of(lights=slice(1)),
 }
 
 DIRECT_LIGHT = Question(
@@ -114,6 +124,30 @@ DIRECT_LIGHT = Question(
             "en": "You gave the irradiance: each term is still to be multiplied by the BRDF.",
             "ru": "Получилась освещённость: каждое слагаемое нужно ещё умножить на ДФО.",
         },
+        "sum-clamped": {
+            "en": "You clamped the whole sum: each cosine is to be cut off at 0 by itself.",
+            "ru": "Вы обнулили всю сумму: каждый косинус нужно ограничивать нулём отдельно.",
+        },
+        "cosine-and-distance": {
+            "en": "Two mistakes at once: the cosine is missing, and the distance is not squared.",
+            "ru": "Две ошибки сразу: нет косинуса, и расстояние не в квадрате.",
+        },
+        "last-light-forgotten": {
+            "en": "The last light is missing from your sum: range(K) ends at K − 1 by itself.",
+            "ru": "В сумме нет последнего источника: range(K) и так кончается на K − 1.",
+        },
+        "first-light-forgotten": {
+            "en": "The first light is missing from your sum: indices begin at 0.",
+            "ru": "В сумме нет первого источника: индексы начинаются с 0.",
+        },
+        "last-light-alone": {
+            "en": "Only the last light counts in your answer: add each term, += in place of =.",
+            "ru": "В ответ вошёл только последний источник: слагаемые нужно прибавлять, += вместо =.",
+        },
+        "first-light-alone": {
+            "en": "Only the first light counts in your answer: does return stand inside the loop?",
+            "ru": "В ответ вошёл только первый источник: не стоит ли return внутри цикла?",
+        },
         "mean-of-lights": {
             "en": "You took the mean over the lights: their contributions add up.",
             "ru": "Вы взяли среднее по источникам, а их вклады складываются.",
@@ -153,6 +187,8 @@ def _lit(theta: Any) -> Any:
 _SLIPS_OF_BALL: Mapping[str, Callable[..., Any]] = {
     "cosine-forgotten": lambda theta, half_angle: _solid_angle(half_angle) + 0 * theta,
     "small-light": lambda theta, half_angle: _solid_angle(half_angle) * _lit(theta),
+    "full-angle": lambda theta, half_angle: _ball(theta, half_angle / 2),
+    "angle-unit": lambda theta, half_angle: _ball(np.radians(theta), np.radians(half_angle)),
     "sine-forgotten": lambda theta, half_angle: 2 * np.pi * np.sin(half_angle) * _lit(theta),
     "horizon-not-clamped": lambda theta, half_angle: np.pi * np.sin(half_angle) ** 2 * np.cos(theta),
     "whole-or-nothing": lambda theta, half_angle: np.pi * np.sin(half_angle) ** 2 * _lit(theta),
@@ -201,6 +237,10 @@ SPHERE_IRRADIANCE = Question(
         ),
     ),
     hints={
+        "full-angle": {
+            "en": "The angular radius is half of the sphere's angle already: do not halve it again.",
+            "ru": "Угловой радиус — это уже половина углового размера шара: не делите его ещё раз на 2.",
+        },
         "small-light": {
             "en": "You multiplied the solid angle by the cosine at the centre: that holds for small lights "
             "only; here the cosine varies over the light.",
@@ -215,109 +255,4 @@ SPHERE_IRRADIANCE = Question(
         },
     },
     seconds=SECONDS,
-)
-
-
-# The balance heuristic
-
-
-def _strategies(rng: np.random.Generator) -> dict[str, Any]:
-    return {
-        "distance": rng.uniform(0.5, 5, 32),
-        "cosine_light": rng.uniform(0.05, 1, 32),
-        "area": rng.uniform(0.1, 4, 32),
-        "pdf": rng.uniform(0.05, 8, 32),
-    }
-
-
-def _extreme_strategies(rng: np.random.Generator) -> dict[str, Any]:
-    given = _strategies(rng)
-    given["cosine_light"][:4] = 0.0
-    given["pdf"][4:8] = 0.0
-    given["area"][8:16] = 10 ** rng.uniform(-12, -6, 8)
-    given["pdf"][16:24] = 10 ** rng.uniform(6, 12, 8)
-    return given
-
-
-def _balance(distance: Any, cosine_light: Any, area: Any, pdf: Any) -> Any:
-    return distance**2 / (distance**2 + area * cosine_light * pdf)
-
-
-def _weight_of(light: Callable[[Any, Any, Any], Any], power: float = 1.0) -> Callable[..., Any]:
-    def weight(distance: Any, cosine_light: Any, area: Any, pdf: Any) -> Any:
-        p = light(distance, np.maximum(cosine_light, 1e-300), area)
-        with np.errstate(all="ignore"):
-            return 1 / (1 + (pdf / p) ** power)
-
-    return weight
-
-
-_SLIPS_OF_WEIGHT: Mapping[str, Callable[..., Any]] = {
-    "pdf-of-area": _weight_of(lambda d, c, a: 1 / a),
-    "light-cosine-forgotten": _weight_of(lambda d, c, a: d**2 / a),
-    "cosine-multiplied": _weight_of(lambda d, c, a: d**2 * c / a),
-    "power-heuristic": _weight_of(lambda d, c, a: d**2 / (c * a), 2.0),
-}
-
-MIS_WEIGHT = Question(
-    signature="mis_weight(distance, cosine_light, area, pdf)",
-    points=1,
-    title={"en": "The balance heuristic", "ru": "Балансная эвристика"},
-    text={
-        "en": "A direction was found by sampling a light uniformly over its `area` $A$: the point is at the "
-        "`distance` $d$, the cosine at the light is `cosine_light` $= \\cos\\theta'$. Sampling the BRDF "
-        "would have given it with the density `pdf` per solid angle. One sample is taken of each. Return "
-        "the weight of the balance heuristic for the light's sample,\n\n"
-        "$$w = \\frac{p_\\text{light}}{p_\\text{light} + p_\\text{BRDF}},$$\n\n"
-        "with both densities per solid angle. All inputs are arrays of shape $(N,)$; $\\cos\\theta' = 0$ "
-        "and $p_\\text{BRDF} = 0$ occur, and the weight is then 1.",
-        "ru": "Направление получено равномерной выборкой источника по его площади `area` $= A$: точка "
-        "находится на расстоянии `distance` $= d$, косинус у источника — `cosine_light` $= \\cos\\theta'$. "
-        "Выборка по ДФО дала бы это направление с плотностью `pdf` по телесному углу. Берётся по одному "
-        "отсчёту каждым способом. Верните вес балансной эвристики для отсчёта, взятого по источнику:\n\n"
-        "$$w = \\frac{p_\\text{ист}}{p_\\text{ист} + p_\\text{ДФО}},$$\n\n"
-        "где обе плотности — по телесному углу. Все входы — массивы формы $(N,)$; встречаются "
-        "$\\cos\\theta' = 0$ и $p_\\text{ДФО} = 0$, тогда вес равен 1.",
-    },
-    parts=(
-        Part(
-            name="ordinary",
-            judge=Values(inputs=_strategies, reference=_balance, rtol=1e-5, variants=_SLIPS_OF_WEIGHT),
-        ),
-        Part(
-            name="hard",
-            judge=Values(
-                inputs=_extreme_strategies, reference=_balance, rtol=1e-5, variants=_SLIPS_OF_WEIGHT
-            ),
-        ),
-    ),
-    hints={
-        **{
-            name: {
-                "en": "The distance has a wrong power somewhere: p_ω = p_A d²/cos θ', with the same d² above "
-                "and below.",
-                "ru": "Где-то не та степень расстояния: p_ω = p_A d²/cos θ', и в числителе, и в знаменателе "
-                "одно и то же d².",
-            }
-            for name in (
-                "distance-cubed",
-                "distance-doubled",
-                "distance-forgotten",
-                "distance-not-squared",
-                "distance-squared-twice",
-            )
-        },
-        "cosine-multiplied": {
-            "en": "p = p_A d²/cos θ': divide by the cosine at the light, do not multiply.",
-            "ru": "p = p_A d²/cos θ': на косинус у источника нужно делить, а не умножать.",
-        },
-        "power-heuristic": {
-            "en": "This is the power heuristic, with squares; the balance heuristic has none.",
-            "ru": "Это степенная эвристика, с квадратами; в балансной их нет.",
-        },
-        "one-minus": {
-            "en": "This is the weight of the BRDF's sample, 1 − w; that of the light's is asked for.",
-            "ru": "Это вес отсчёта по ДФО, 1 − w; а нужен вес отсчёта по источнику.",
-        },
-    },
 )
