@@ -8,7 +8,7 @@ import sys
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Literal
@@ -106,6 +106,7 @@ class Sandbox:
         self._budgets: list[_Budget] = []
         self._apart = self._branched = False
         self._end = self._output = ""
+        self._waited = 0.0
 
     def __enter__(self) -> Sandbox:
         """Hold interrupts from here on; they are let in while a child is waited for."""
@@ -247,7 +248,6 @@ class Sandbox:
                 child.close()
 
     def _called(self, request: dict[str, Any], arrays: Sequence[Array], timeout: float | None) -> Result:
-        began = time.monotonic()
         seconds = self.limits.seconds if timeout is None else timeout
         late = f"took longer than {seconds:g} s"
         for last in (False, True):
@@ -269,11 +269,10 @@ class Sandbox:
                 seconds, late = budget.left, f"took longer than {budget.seconds:g} s in all"
         if seconds <= 0:
             return Result(error=late, ended=True, protections=self._protections)
-        asked = time.monotonic()
         result = self._request(request, arrays, seconds, late)
         for budget in self._budgets:
-            budget.left -= time.monotonic() - asked
-        return replace(result, seconds=time.monotonic() - began)
+            budget.left -= result.seconds
+        return result
 
     def _branch(self, begins: bool) -> Result:
         """Begin or end a copy of the process that the submission was loaded in."""
@@ -290,14 +289,16 @@ class Sandbox:
         self, request: dict[str, Any], arrays: Sequence[Array], seconds: float, late: str, token: str = ""
     ) -> Result:
         """Ask the child, and return what becomes of it."""
-        began = time.monotonic()
         found: dict[str, Any] = {}
         try:
             with held():
                 child = self._child = self._child or self._started()
             token = token or secrets.token_hex(8)
             asked = pack({"id": token, "file": self._name, **request}, arrays)
-            header, values = child.exchange(asked, seconds)
+            try:
+                header, values = child.exchange(asked, seconds)
+            finally:
+                self._waited = child.waited
             found = judged(header, values, token, outputs=request.get("outputs", 1), folder=child.folder)
             self._output = child.printed()
         except (StoppedError, MalformedError) as error:
@@ -311,7 +312,7 @@ class Sandbox:
             raise
         return Result(
             **found,
-            seconds=time.monotonic() - began,
+            seconds=self._waited,
             output=self._output,
             protections=self._protections,
         )
