@@ -14,6 +14,7 @@ from pathlib import Path
 ASSIGNMENT = """
 import os
 import signal
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -38,7 +39,8 @@ class Patient:
         found = self.values.judge(callee, rng, **options)
         place = Path(os.environ.get("HOLD", "/nowhere"))
         while "longer" in found.text and place.is_dir():
-            (place / str(os.getpid())).touch()
+            with suppress(FileNotFoundError):
+                (place / str(os.getpid())).touch()
             callee.call(np.ones(1))
         return found
 
@@ -134,10 +136,12 @@ def start(*arguments: str | Path, **options: object) -> subprocess.Popen[bytes]:
 
 @contextmanager
 def holding(folder: Path) -> Iterator[Path]:
-    """Keep, inside, the task of Wsewolod from ending; the folder then has the id of the process that has it."""
+    """Keep Wsewolod's task from ending inside; a file in the folder then tells which process has it."""
     folder.mkdir()
-    yield folder
-    folder.rename(folder.with_name("released"))
+    try:
+        yield folder
+    finally:
+        folder.rename(folder.with_name("released"))
 
 
 def wait_until(true: Callable[[], bool], seconds: float = 120.0) -> None:
