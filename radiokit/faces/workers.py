@@ -12,7 +12,7 @@ from radiokit.facts.errors import MissingExtraError, ParameterError, RadiokitErr
 
 __all__ = ["SerialExecutor", "available_workers", "open_executor"]
 
-CONNECT_TIMEOUT = 10.0
+CONNECT_TIMEOUT = 30.0
 """How long a scheduler may take to answer [s]."""
 GRACE = 10.0
 """How long a task may take to clear up when the process that gave it is gone [s]."""

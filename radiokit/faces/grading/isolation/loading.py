@@ -38,19 +38,22 @@ class _LateError(BaseException):
 
 
 class _Alarm:
-    """Raises ``_LateError`` where the time is up; what was computed counts in full, and waiting in turns."""
+    """Raises ``_LateError`` once the time is up; what was computed counts in full, and waiting in turns."""
 
     def __init__(self) -> None:
         self._wall, self._spent = time.monotonic, time.process_time
         self._left = self._turn = self._seen = self._cost = 0.0
+        self._set = False
 
     def start(self, seconds: float) -> None:
         self._left, self._turn = seconds, seconds / TURNS
         self._seen, self._cost = self._wall(), self._spent()
+        self._set = True
         signal.setitimer(signal.ITIMER_REAL, self._turn, self._turn)
 
     def stop(self) -> float:
         """Return how much is left [s]."""
+        self._set = False
         signal.setitimer(signal.ITIMER_REAL, 0)
         self._count()
         return self._left
@@ -61,8 +64,11 @@ class _Alarm:
         self._seen, self._cost = seen, cost
 
     def __call__(self, signum: int, frame: types.FrameType | None) -> None:
+        if not self._set:
+            return
         self._count()
         if self._left <= 0:
+            self._set = False
             raise _LateError
 
 
