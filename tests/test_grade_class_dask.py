@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import logging
 import os
 import signal
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 import pytest
@@ -44,6 +45,12 @@ class Cluster:
         self.processes.callback(self.stop, process)
         return process
 
+    def is_announced(self) -> bool:
+        """Return whether the scheduler's file is there and whole: workers that find a half end."""
+        with suppress(OSError, ValueError):
+            return bool(json.loads(self.file.read_text()))
+        return False
+
     def stop(self, process: subprocess.Popen[bytes]) -> None:
         """End one, and see that nothing of it is left."""
         process.terminate()
@@ -66,7 +73,7 @@ def cluster(tmp_path: Path) -> Iterator[Cluster]:
     found = Cluster(folder)
     with found.processes:
         found.start("scheduler", "dask_scheduler", "--host", "127.0.0.1", "--port", "0")
-        wait_until(found.file.exists)
+        wait_until(found.is_announced)
         yield found
 
 
