@@ -143,10 +143,11 @@ def test_random_numbers_of_loading_repeat(tmp_path):
 
 def test_calls_share_a_time(theirs):
     with theirs.within(2.0):
-        assert theirs.call("sleeps", 0.5).ok
+        first = theirs.call("sleeps", 0.5)
+        assert first.ok
         late = theirs.call("sleeps", 60.0)
         assert late.error == "took longer than 2 s in all"
-        assert late.seconds < 1.9  # what the first has left
+        assert late.seconds <= 2 - first.seconds + process.TURN
         late = theirs.call("same", 1.0)
         assert (late.error, late.seconds) == ("took longer than 2 s in all", 0)
         with theirs.within(60.0):
