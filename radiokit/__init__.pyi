@@ -52,6 +52,8 @@ from .measure.kernels import select as select
 from .measure.twin import Twin as Twin
 from .physics import fresnel as fresnel
 from .physics import integrating_sphere as integrating_sphere
+from .physics import photometry as photometry
+from .physics import planck as planck
 from .physics import relations as relations
 from .physics import view_factor as view_factor
 from .physics.relate.request import list_relations as list_relations

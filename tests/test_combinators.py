@@ -35,11 +35,6 @@ ROOM = {"samples": 1 << 13, "tests": 40}
 BUDGET = 600_000
 
 
-def skewed(wi, wo):
-    """Not reciprocal: its albedo is 0.2."""
-    return 0.3 / np.pi * wi[:, 2]
-
-
 def plain(wi, wo):
     return np.full(len(wi), 0.3)
 

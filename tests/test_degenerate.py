@@ -90,7 +90,6 @@ def test_all_lights_are_here():
 NUMBERS = (NAN, INF, -INF, -1.0, None, "x", 1e300, [[1.0]], 1j, ())
 LENGTHS = ("radius", "width", "height", "outer")
 VECTORS = ((NAN, 0, 1), (0, INF, 0), (1, 2), None, "up", (0, 0, 1, 0), (1j, 0, 0))
-OPTIONAL = {("constant", "normal")}
 
 
 @pytest.mark.parametrize("name", GOOD)

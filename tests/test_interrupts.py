@@ -62,7 +62,8 @@ def test_what_is_let_in_comes_at_once(received: list[int]) -> None:
 
 def test_after_an_interrupt_was_let_in_the_rest_is_cleared_up_undisturbed() -> None:
     done = []
-    with pytest.raises(KeyboardInterrupt), held():  # noqa: PT012
+
+    def interrupted() -> None:
         try:
             with let_in():
                 signal.raise_signal(signal.SIGINT)
@@ -71,6 +72,9 @@ def test_after_an_interrupt_was_let_in_the_rest_is_cleared_up_undisturbed() -> N
             signal.raise_signal(signal.SIGINT)
             with let_in():
                 done.append("cleared up")
+
+    with pytest.raises(KeyboardInterrupt), held():
+        interrupted()
     assert done == ["cleared up"]
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
     assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL

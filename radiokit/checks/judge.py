@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Iterable
+from numbers import Real
 from typing import Any
 
 from radiokit.checks.energy import energy
@@ -38,7 +39,7 @@ _FEWEST = 1000
 def check(
     f: BSDF | Callable[..., Any],
     *,
-    laws: Iterable[str] = LAWS,
+    laws: str | Iterable[str] = LAWS,
     tolerance: float = TOLERANCE,
     seconds: float = 60.0,
     evaluations: int | None = None,
@@ -57,7 +58,7 @@ def check(
     f : BSDF or callable
         A callable f(wi, wo) [sr⁻¹] is wrapped by ``as_bsdf``; one through which light passes says so by its
         attributes ``transmissive`` and ``eta``.
-    laws : iterable of str
+    laws : str or iterable of str
         Which of ``values``, ``reciprocity``, ``energy``, ``sampling``, ``microfacet``.
     tolerance : float
         How far beyond a limit a value may lie.
@@ -89,15 +90,15 @@ def check(
     >>> report.ok, report["energy"].message[:8]
     (True, 'sup 1 ± ')
     """
-    chosen = list(laws)
+    chosen = [laws] if isinstance(laws, str) else list(laws)
     for law in chosen:
         if law not in LAWS:
             raise UnknownNameError("law", law, LAWS)
-    if not seconds > 0:
+    if not isinstance(seconds, Real) or not seconds > 0:
         raise ParameterError("seconds", seconds, "greater than 0")
     if evaluations is not None and not (isinstance(evaluations, int) and evaluations >= _FEWEST):
         raise ParameterError("evaluations", evaluations, f"an integer of at least {_FEWEST}, or None")
-    if not 0 <= tolerance < 1:
+    if not isinstance(tolerance, Real) or not 0 <= tolerance < 1:
         raise ParameterError("tolerance", tolerance, "in [0, 1)")
     model = as_bsdf(f)
     if not getattr(model, "has_sampler", True):

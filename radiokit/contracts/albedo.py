@@ -13,10 +13,12 @@ import numpy.typing as npt
 
 from radiokit.contracts.blackbox import as_bsdf
 from radiokit.contracts.bsdf import BSDF, FloatArray
+from radiokit.facts.checking import check_above_zero
 from radiokit.facts.directions import check_directions
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.measure import lowdiscrepancy
+from radiokit.measure.montecarlo import seed_from
 from radiokit.measure.quadrature import hemisphere
 from radiokit.measure.transmission import reflection_edges, sphere, transmission
 
@@ -85,7 +87,8 @@ def albedo(
     ------
     ParameterError
         When ``wo`` is not a unit vector above the horizon (off the surface, for a model that transmits),
-        ``method`` or ``side`` is unknown, or ``seconds`` is given for the quadrature.
+        ``method`` or ``side`` is unknown, ``rtol`` or ``seconds`` is not above 0, ``rng`` is no seed, or
+        ``seconds`` is given for the quadrature.
     CallableError, NonFiniteError
         When the function fails at some direction.
 
@@ -111,8 +114,7 @@ def albedo(
         raise ParameterError("side", side, "'both', 'reflected' or 'transmitted'")
     if fixed not in ("wo", "wi"):
         raise ParameterError("fixed", fixed, "'wo' or 'wi'")
-    if seconds is not None and not seconds > 0:
-        raise ParameterError("seconds", seconds, "above 0, or None")
+    check_above_zero(rtol=rtol, seconds=seconds)
     if method == "quadrature":
         if seconds is not None:
             raise ParameterError("seconds", seconds, "None, or method 'mc' or 'qmc'")
@@ -123,7 +125,8 @@ def albedo(
             raise ParameterError("method", method, "'quadrature' when wi is held fixed")
         if samples is None and seconds is None:
             samples = SAMPLES if rtol is None else MOST_SAMPLES
-        seed = int(np.random.default_rng(rng).integers(1 << 63))
+        generator = rng if isinstance(rng, np.random.Generator) else np.random.default_rng(seed_from(rng))
+        seed = int(generator.integers(1 << 63))
         sampled = _monte_carlo if method == "mc" else _low_discrepancy
         one = partial(sampled, model, seed=seed, side=side, samples=samples, rtol=rtol, seconds=seconds)
     else:

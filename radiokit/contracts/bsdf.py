@@ -60,6 +60,10 @@ class DeltaLobe:
     Of the flux that arrives from ``wi`` this share leaves towards ``wo``, and the same share the other way
     round. Radiance is multiplied by ``weight n(wo)² / n(wi)²``, with n(w) the index on w's side: that is
     f |cos θi| / pdf of a sample that always goes there.
+
+    >>> (lobe,) = bsdf("mirror", reflectance=0.9).delta_lobes(np.array([[0.6, 0.0, 0.8]]))
+    >>> lobe.wi.tolist(), lobe.weight.tolist()
+    ([[-0.6, -0.0, 0.8]], [0.9])
     """
 
     wi: FloatArray
@@ -249,6 +253,13 @@ def list_bsdfs() -> list[str]:
 
 def bsdf(name: str, **parameters: Any) -> BSDF:
     """Return the BSDF model called ``name``.
+
+    Parameters
+    ----------
+    name : str
+        One of ``list_bsdfs()``.
+    **parameters
+        Those of its class, such as ``alpha=0.3``; the help of its class gives their ranges and units.
 
     Raises
     ------

@@ -213,7 +213,7 @@ def coated(base: BSDF | Callable[..., Any], *, coat: BSDF, scaling: Scaling | No
     Raises
     ------
     ParameterError
-        When light passes through the base, or the coat is not isotropic.
+        When light passes through the base, or the coat is no BSDF or not isotropic.
 
     >>> from radiokit.contracts.albedo import albedo
     >>> from radiokit.contracts.bsdf import bsdf
@@ -222,5 +222,7 @@ def coated(base: BSDF | Callable[..., Any], *, coat: BSDF, scaling: Scaling | No
     1.0
     """
     under = as_bsdf(base)
+    if not isinstance(coat, BSDF):
+        raise ParameterError("coat", coat, "a BSDF, such as bsdf('dielectric', eta=1.5)")
     chosen: Scaling = "max" if under.diffuse_reflectance() is None else "product"
     return Coated(base=under, coat=coat, scaling=scaling or chosen)

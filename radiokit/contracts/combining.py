@@ -74,22 +74,21 @@ def wavelengths(f: BSDF) -> int | None:
     return value.shape[1] if value.ndim > 1 else None
 
 
-def spectrum(name: str, value: Any, *, upper: float = np.inf) -> Spectrum:
+def spectrum(name: str, value: Any) -> Spectrum:
     """Return a number at least 0 and finite, or a tuple of them, one a wavelength.
 
     Raises
     ------
     ParameterError
     """
-    interval = f"[0, {upper:g}]" if np.isfinite(upper) else "[0, inf)"
-    allowed = f"a number in {interval}, or a sequence of them, one a wavelength"
+    allowed = "a number in [0, inf), or a sequence of them, one a wavelength"
     try:
         numbers = np.asarray(value, dtype=float)
     except (TypeError, ValueError):
         raise ParameterError(name, value, allowed) from None
     if value is None or numbers.ndim > 1 or not numbers.size:
         raise ParameterError(name, value, allowed)
-    if not np.all(np.isfinite(numbers) & (numbers >= 0) & (numbers <= upper)):
+    if not np.all(np.isfinite(numbers) & (numbers >= 0)):
         raise ParameterError(name, value, allowed)
     return float(numbers) if numbers.ndim == 0 else tuple(numbers.tolist())
 

@@ -135,6 +135,13 @@ def list_emitters() -> list[str]:
 def emitter(name: str, **parameters: Any) -> Emitter:
     """Return the emitter called ``name``.
 
+    Parameters
+    ----------
+    name : str
+        One of ``list_emitters()``.
+    **parameters
+        Those of its class, such as ``radiance=1.0``; the help of its class gives their ranges and units.
+
     Raises
     ------
     UnknownNameError

@@ -103,6 +103,13 @@ def list_occluders() -> list[str]:
 def occluder(name: str, **parameters: Any) -> Occluder:
     """Return the occluder called ``name``.
 
+    Parameters
+    ----------
+    name : str
+        One of ``list_occluders()``.
+    **parameters
+        Those of its class, such as ``radius=1.0``; the help of its class gives their ranges and units.
+
     Raises
     ------
     UnknownNameError

@@ -50,10 +50,30 @@ class Parameter:
 
 
 def parameter(interval: str, unit: str, meaning: str, *, spectral: bool = False, **field: Any) -> Any:
-    """Declare a dataclass field with its interval, such as ``"(0, 1]"`` or ``"[0, inf)"``.
+    """Declare a field of a model's dataclass: the range that is checked, the unit, and what it means.
 
-    ``default=None`` makes it optional: then ``None`` is allowed too. With ``spectral`` it may also be a
-    sequence of K numbers, one a wavelength, which becomes a tuple.
+    Parameters
+    ----------
+    interval : str
+        Such as ``"(0, 1]"`` or ``"[0, inf)"``.
+    unit : str
+        Such as ``"rad"``; ``"1"`` for a pure number.
+    meaning : str
+        In a few words.
+    spectral : bool
+        Whether it may also be a sequence of K numbers, one a wavelength, which becomes a tuple.
+    **field
+        As for ``dataclasses.field``. ``default=None`` makes it optional: then ``None`` is allowed too.
+
+    >>> from dataclasses import dataclass
+    >>> @dataclass(frozen=True, kw_only=True)
+    ... class Lamp:
+    ...     radius: float = parameter("(0, inf)", "m", "of the globe")
+    ...     __post_init__ = check_parameters
+    >>> Lamp(radius=-1)
+    Traceback (most recent call last):
+    ...
+    radiokit.facts.errors.ParameterError: radius = -1 is not allowed: it must be a number in (0, inf)
     """
     declared = Parameter(interval, unit, meaning, spectral)
     return dataclasses.field(metadata={"parameter": declared}, **field)

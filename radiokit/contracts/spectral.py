@@ -15,7 +15,7 @@ from radiokit.contracts.parameters import Spectrum
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 
-__all__ = ["amount", "check_wavelengths", "flux_estimate", "stacked", "times", "wavelengths_of", "weighted"]
+__all__ = ["amount", "check_wavelengths", "flux_estimate", "stacked", "times", "weighted"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -29,15 +29,6 @@ def amount(strength: Spectrum) -> Any:
     (2.0, [1.0, 2.0])
     """
     return np.array(strength) if isinstance(strength, tuple) else strength
-
-
-def wavelengths_of(strength: Spectrum) -> int | None:
-    """Return how many wavelengths a strength has; None for a single number.
-
-    >>> wavelengths_of((2.0, 3.0))
-    2
-    """
-    return len(strength) if isinstance(strength, tuple) else None
 
 
 def weighted(weights: npt.ArrayLike, strength: Spectrum) -> FloatArray:

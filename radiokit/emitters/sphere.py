@@ -29,7 +29,6 @@ __all__ = ["Sphere"]
 
 FloatArray = npt.NDArray[np.float64]
 
-_EPS = float(np.finfo(float).eps)
 _MOST = float(np.finfo(float).max)
 
 

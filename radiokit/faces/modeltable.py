@@ -147,12 +147,12 @@ class ModelTable:
         return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
-def models_table(names: Iterable[str] | None = None, *, timing: bool = True) -> ModelTable:
+def models_table(names: str | Iterable[str] | None = None, *, timing: bool = True) -> ModelTable:
     """Return the table of models, each at its default parameters.
 
     Parameters
     ----------
-    names : iterable of str, optional
+    names : str or iterable of str, optional
         Which models; all by default.
     timing : bool
         Whether to measure what an evaluation costs; without it, every run gives the same table.
@@ -166,7 +166,8 @@ def models_table(names: Iterable[str] | None = None, *, timing: bool = True) -> 
     >>> table["lambert"].kind, round(table["lambert"].supremum, 6), table["mirror"].sampling
     ('diffuse', 1.0, 'delta')
     """
-    models = [bsdf(name) for name in (list_bsdfs() if names is None else names)]
+    wanted = list_bsdfs() if names is None else [names] if isinstance(names, str) else names
+    models = [bsdf(name) for name in wanted]
     costs = _costs(models) if timing else [None] * len(models)
     return ModelTable(tuple(_row(f, cost) for f, cost in zip(models, costs, strict=True)))
 

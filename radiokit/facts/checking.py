@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy.typing as npt
 
 from radiokit.facts.errors import ParameterError
 
-__all__ = ["numbers", "reject", "short", "vectors"]
+__all__ = ["check_above_zero", "check_integration", "numbers", "reject", "short", "vectors"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -58,3 +59,33 @@ def vectors(name: str, value: npt.ArrayLike, allowed: str) -> FloatArray:
         shown = short(value) if array.size <= 12 else _Text(f"an array of shape {array.shape}")
         raise ParameterError(name, shown, allowed)
     return array
+
+
+def check_above_zero(**limits: Any) -> None:
+    """Refuse a limit, such as ``seconds`` or ``rtol``, that is neither a number above 0 nor None.
+
+    >>> check_above_zero(rtol=1e-3, seconds=None)
+    >>> check_above_zero(rtol=0)
+    Traceback (most recent call last):
+    ...
+    radiokit.facts.errors.ParameterError: rtol = 0 is not allowed: it must be above 0, or None
+    """
+    for name, limit in limits.items():
+        if limit is not None and not (isinstance(limit, Real) and float(limit) > 0):
+            raise ParameterError(name, limit, "above 0, or None")
+
+
+def check_integration(integrand: Any, **tolerances: Any) -> None:
+    """Refuse an integrand that cannot be called, and a tolerance that is no number at least 0.
+
+    >>> check_integration(abs, rtol=1e-8, atol=0.0)
+    >>> check_integration(abs, atol=-1.0)
+    Traceback (most recent call last):
+    ...
+    radiokit.facts.errors.ParameterError: atol = -1.0 is not allowed: it must be a number at least 0
+    """
+    if not callable(integrand):
+        raise ParameterError("integrand", short(integrand), "a function of an array of points")
+    for name, tolerance in tolerances.items():
+        if not (isinstance(tolerance, Real) and float(tolerance) >= 0):
+            raise ParameterError(name, tolerance, "a number at least 0")

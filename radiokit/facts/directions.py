@@ -2,6 +2,7 @@
 
 ``check_directions``, ``unit``, ``frame``, the spherical coordinates and the caps check what they are given.
 The other functions are kernels: they trust vectors to be of unit length, as a model's ``evaluate`` does.
+``dot`` comes from ``triples``, ``reflect`` and ``refract`` from ``deflection``.
 """
 
 from __future__ import annotations
@@ -12,7 +13,9 @@ import numpy as np
 import numpy.typing as npt
 
 from radiokit.facts.checking import numbers, reject, vectors
+from radiokit.facts.deflection import reflect, refract
 from radiokit.facts.source import Source
+from radiokit.facts.triples import cross, dot, every, length, normalise
 
 __all__ = [
     "FRAME_SOURCE",
@@ -77,42 +80,6 @@ vector of shape (..., 3)
     return array
 
 
-def dot(a: FloatArray, b: FloatArray) -> Any:
-    """Return the dot products of vectors ``a`` and ``b`` (..., 3): shape (...).
-
-    >>> float(dot(np.array([1.0, 2.0, 3.0]), np.array([0.0, 0.0, 2.0])))
-    6.0
-    """
-    return a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1] + a[..., 2] * b[..., 2]
-
-
-def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    (ax, ay, az), (bx, by, bz) = np.moveaxis(a, -1, 0), np.moveaxis(b, -1, 0)
-    return np.stack((ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx), axis=-1)
-
-
-def _every(components: npt.NDArray[np.bool_]) -> Any:
-    """Return whether all three of (..., 3) are true; many times as fast as ``all`` along so short an axis."""
-    return components[..., 0] & components[..., 1] & components[..., 2]
-
-
-def _length(v: FloatArray) -> Any:
-    """Return the lengths of vectors whose squares may underflow."""
-    return np.hypot(np.hypot(v[..., 0], v[..., 1]), v[..., 2])
-
-
-def _normalise(v: FloatArray) -> FloatArray:
-    """Divide finite non-zero vectors by their lengths; a power of two keeps extreme squares in range."""
-    with np.errstate(over="ignore"):
-        square = np.asarray(dot(v, v))
-    if not ((square > 1e-280) & (square < 1e280)).all():
-        _, exponent = np.frexp(np.max(np.abs(v), axis=-1, keepdims=True))
-        v = np.ldexp(v, -exponent)
-        square = np.asarray(dot(v, v))
-    result: FloatArray = v / np.sqrt(square)[..., None]
-    return result
-
-
 def unit(v: npt.ArrayLike) -> FloatArray:
     """Return vectors ``v`` (..., 3) scaled to length 1, however long or short they are.
 
@@ -126,9 +93,9 @@ def unit(v: npt.ArrayLike) -> FloatArray:
     """
     allowed = "a finite vector of shape (..., 3) other than zero"
     array = vectors("v", v, allowed)
-    bad = ~_every(np.isfinite(array)) | _every(array == 0.0)
+    bad = ~every(np.isfinite(array)) | every(array == 0.0)
     reject("v", array, np.asarray(bad), allowed)
-    return _normalise(array)
+    return normalise(array)
 
 
 def spherical_to_cartesian(theta: npt.ArrayLike, phi: npt.ArrayLike) -> FloatArray:
@@ -236,82 +203,10 @@ def half_vector(wi: FloatArray, wo: FloatArray) -> FloatArray:
     array([0., 0., 1.])
     """
     total = np.add(wi, wo, dtype=np.float64)  # cancels only where it is exact
-    opposite = _every(total == 0.0)
+    opposite = every(total == 0.0)
     if opposite.any():
         total = np.where(opposite[..., None], frame(wo)[..., 0, :], total)
-    return _normalise(total)
-
-
-def reflect(w: FloatArray, normal: FloatArray | None = None) -> FloatArray:
-    """Return the mirror directions 2(w·n)n − w of ``w`` (..., 3); ``normal`` (..., 3) is z by default.
-
-    >>> reflect(np.array([0.6, 0.0, 0.8]))
-    array([-0.6, -0. ,  0.8])
-    """
-    w = np.asarray(w, dtype=np.float64)
-    if normal is None:
-        return np.multiply(w, (-1.0, -1.0, 1.0))
-    normal = np.asarray(normal, dtype=np.float64)
-    result: FloatArray = 2.0 * dot(w, normal)[..., None] * normal - w
-    return result
-
-
-def refract(
-    w: FloatArray, normal: FloatArray | None = None, *, eta: npt.ArrayLike
-) -> tuple[FloatArray, npt.NDArray[np.bool_]]:
-    """Return the refracted directions and where total internal reflection leaves none.
-
-    Parameters
-    ----------
-    w : ndarray, shape (..., 3)
-        Unit vectors away from the surface, towards where the light comes from.
-    normal : ndarray, shape (..., 3)
-        z by default.
-    eta : array_like, shape (...)
-        Index on the side that the normal leaves behind, over the index on the side that it points to
-        (η_t/η_i for light from outside), in [1e-100, 1e100]. For ``w`` below the surface it is inverted.
-
-    Returns
-    -------
-    direction : ndarray, shape (..., 3)
-        Unit vectors away from the surface on the other side. Under total internal reflection, the limit
-        at the critical angle: along the surface.
-    total : ndarray of bool, shape (...)
-
-    Raises
-    ------
-    ParameterError
-        When ``eta`` is not in that range.
-
-    Source: Pharr, Jakob, Humphreys (2023), Physically Based Rendering, 4th edition, section 9.3.3.
-
-    >>> direction, total = refract(np.array([0.6, 0.0, 0.8]), eta=1.5)
-    >>> [round(float(x), 6) for x in direction], bool(total)
-    ([-0.4, 0.0, -0.916515], False)
-    """
-    allowed = "a number in [1e-100, 1e100]"
-    ratio = numbers("eta", eta, allowed)
-    reject("eta", ratio, np.asarray(~((ratio >= 1e-100) & (ratio <= 1e100))), allowed)
-    w = np.asarray(w, dtype=np.float64)
-    n = np.array([0.0, 0.0, 1.0]) if normal is None else np.asarray(normal, dtype=np.float64)
-    cosine = dot(w, n)
-    side = np.copysign(1.0, cosine)[..., None]
-    # Indices of the far and the near side: 1/η is never rounded, so η next to 1 keeps its digits both ways.
-    far = np.where(side[..., 0] > 0.0, ratio, 1.0)
-    near = np.where(side[..., 0] > 0.0, 1.0, ratio)
-    # The part along the surface, w − (w·n)n, from the small w ∓ n: it keeps its digits near the normal.
-    offset = w - side * n
-    along = offset - dot(offset, n)[..., None] * n
-    sine = _length(along)
-    # (far cos θt)² = far² − near² sin² = far² − near² + near² cos²: each is good where the other cancels.
-    by_sine = (far - near * sine) * (far + near * sine)
-    by_cosine = (far - near) * (far + near) + (near * cosine) ** 2
-    square = np.where((far < near) & (cosine * cosine > 0.5), by_sine, by_cosine)
-    total = np.asarray(square < 0.0)
-    across = np.sqrt(np.maximum(square, 0.0))[..., None]
-    limit = -along / np.where(sine > 0.0, sine, 1.0)[..., None]
-    direction = -(near[..., None] * along + side * across * n) / far[..., None]
-    return np.where(total[..., None], limit, direction) + 0.0, total
+    return normalise(total)
 
 
 def angle_between(a: FloatArray, b: FloatArray) -> Any:
@@ -329,7 +224,7 @@ def angle_between(a: FloatArray, b: FloatArray) -> Any:
     1e-16
     """
     a, b = np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)
-    return np.arctan2(0.5 * _length(_cross(a - b, a + b)), dot(a, b))
+    return np.arctan2(0.5 * length(cross(a - b, a + b)), dot(a, b))
 
 
 def cap_solid_angle(half_angle: npt.ArrayLike) -> Any:

@@ -86,9 +86,9 @@ class UnknownNameError(RadiokitError, LookupError):
     unknown BSDF 'gxg'; did you mean 'ggx'? Known: ggx, phong
     """
 
-    def __init__(self, kind: str, name: str, known: Iterable[str], aliases: Iterable[str] = ()) -> None:
+    def __init__(self, kind: str, name: Any, known: Iterable[str], aliases: Iterable[str] = ()) -> None:
         known = sorted(known)
-        guess = suggestion(name, [*known, *aliases]) or "."
+        guess = (suggestion(name, [*known, *aliases]) if isinstance(name, str) else "") or "."
         super().__init__(
             f"unknown {kind} {name!r}{guess} Known: {', '.join(known) or 'none'}",
             kind=kind,

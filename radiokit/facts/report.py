@@ -39,6 +39,11 @@ class Report:
 
     Indexing by a check's name gives its verdict. Printing gives a plain table, a notebook shows HTML,
     and Rich shows colours.
+
+    >>> sums = Verdict(check="sum", claim="1 + 1 = 2", outcome="holds", evidence="proved")
+    >>> report = Report("arithmetic", (sums,))
+    >>> report.ok, report["sum"].claim
+    (True, '1 + 1 = 2')
     """
 
     subject: str

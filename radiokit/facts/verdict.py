@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.facts.jsonable import jsonable
 
@@ -78,7 +79,9 @@ class Verdict:
     claim : str
         What was tested, as a formula in words.
     outcome : Outcome
+        Or its text: ``"holds"``, ``"violated"`` or ``"inconclusive"``.
     evidence : Evidence
+        Or its text: ``"proved"``, ``"bounded"``, ``"measured"`` or ``"refuted"``.
     message : str
         One line for a person: by how much, and where.
     witness : Witness, optional
@@ -86,8 +89,20 @@ class Verdict:
     estimate : Estimate, optional
         The number that was compared with ``limit``.
     limit, p_value : float, optional
+    evaluations : int
+        How often the model was evaluated for it.
+    seconds : float
+        What it took [s].
     details : mapping
         Resolution of the search, and whatever else a program may want.
+
+    Raises
+    ------
+    ParameterError
+        When there is no such outcome or evidence.
+
+    >>> Verdict(check="sum", claim="1 + 1 = 2", outcome="holds", evidence="proved").ok
+    True
     """
 
     check: str
@@ -102,6 +117,14 @@ class Verdict:
     evaluations: int = 0
     seconds: float = 0.0
     details: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for name, kind in (("outcome", Outcome), ("evidence", Evidence)):
+            given = getattr(self, name)
+            if not isinstance(given, kind):
+                if given not in list(kind):
+                    raise ParameterError(name, given, "one of " + ", ".join(kind))
+                object.__setattr__(self, name, kind(given))
 
     @property
     def ok(self) -> bool:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from radiokit.facts.checking import check_integration, numbers
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.converge import GK21, Integrand, RuleSum, adaptive, apply_rule, converge
@@ -42,6 +43,12 @@ def box(
     ----------
     integrand : callable
         Takes points (N, 2), returns (N,) or (N, K).
+    low, high : array_like, shape (2,)
+        Opposite corners, no coordinate of ``high`` below that of ``low``.
+    rtol, atol : float
+        The error may be ``max(atol, rtol |value|)``.
+    max_evaluations : int
+        A budget. The estimate says ``converged=False`` when it did not suffice.
     kinks : bool
         Whether kinks are known to be inside. Product rules, which then converge slowly and agree by chance,
         are left out.
@@ -49,7 +56,8 @@ def box(
     Raises
     ------
     ParameterError
-        When ``high`` is below ``low`` or not finite.
+        When ``high`` is below ``low`` or not finite, the integrand is not callable, or a tolerance is
+        negative.
     NonFiniteError
         When the integrand is NaN or infinite somewhere.
 
@@ -58,7 +66,8 @@ def box(
     4.5
     """
     start = time.perf_counter()
-    low, high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
+    check_integration(integrand, rtol=rtol, atol=atol)
+    low, high = numbers("low", low, "two finite numbers"), numbers("high", high, "two finite numbers")
     span = high - low
     if not (np.all(np.isfinite(span)) and np.all(span >= 0)):
         raise ParameterError("high", high.tolist(), f"finite and not below low = {low.tolist()}")

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from radiokit.facts.checking import check_above_zero
 from radiokit.facts.errors import CallableError, NonFiniteError, ParameterError
 from radiokit.facts.estimate import Estimate, student_widening
 from radiokit.measure.lattice import KOROBOV_LOG2, korobov
@@ -266,6 +267,4 @@ def _check(
         if not (type(count) is int or isinstance(count, np.integer)) or not low <= count <= high:
             allowed = f"an integer, at least {low}" if high == math.inf else f"an integer in [{low}, {high}]"
             raise ParameterError(name, count, allowed)
-    for name, limit in (("rtol", rtol), ("seconds", seconds)):
-        if limit is not None and not limit > 0:
-            raise ParameterError(name, limit, "above 0, or None")
+    check_above_zero(rtol=rtol, seconds=seconds)

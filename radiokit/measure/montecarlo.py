@@ -14,13 +14,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from radiokit.facts.checking import check_above_zero
 from radiokit.facts.errors import CallableError, NonFiniteError, ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.moments import Moments
 
 __all__ = ["ENDLESS", "BlockDraw", "Draw", "block_generator", "but", "mean", "seed_from"]
-
-FloatArray = npt.NDArray[np.float64]
 
 Draw = Callable[[np.random.Generator, int], npt.ArrayLike]
 """``draw(generator, n)`` returns n independent values ``(n,)``, or ``(n, K)``, whose mean is wanted."""
@@ -139,14 +138,14 @@ def mean(
     >>> estimate.covers(0.5, level=0.9999), estimate.evaluations
     (True, 100000)
     """
+    if not (callable(draw) or isinstance(draw, BlockDraw)):
+        raise ParameterError("draw", draw, "a function draw(generator, n), or a BlockDraw")
     most = ENDLESS if samples is None and seconds is not None else samples
     for name, count, least in (("samples", most, 2), ("block", block, 1)):
         if not (type(count) is int or isinstance(count, np.integer)) or count < least:
             raise ParameterError(name, count, f"an integer, at least {least}")
     assert most is not None
-    for name, limit in (("rtol", rtol), ("seconds", seconds)):
-        if limit is not None and not limit > 0:
-            raise ParameterError(name, limit, "above 0, or None")
+    check_above_zero(rtol=rtol, seconds=seconds)
     start = time.perf_counter()
     halvings = _halvings(block) if isinstance(draw, BlockDraw) and rtol is not None else 0
     blocks = _blocks(most, block, halvings)

@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from radiokit.facts.checking import check_above_zero, check_integration, vectors
+from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.box import bent, box
 from radiokit.measure.converge import (
@@ -25,6 +27,7 @@ from radiokit.measure.converge import (
     converge,
 )
 from radiokit.measure.curves import CURVES, Curve
+from radiokit.measure.ladders import SLOPE_SIZES, SMOOTH_SIZES, SMOOTH_WIDTHS, SPLIT_SIZES, WIDTHS
 from radiokit.measure.polar import POLAR_SIZES, LitRules, polar_rule
 from radiokit.measure.scan import DOUBT, SCAN, look_over, missed
 from radiokit.measure.slope import Lobe, find_lobe, mirrored, slope_map, slope_rule, turned
@@ -33,54 +36,6 @@ from radiokit.measure.split import kinked, split_rule
 __all__ = ["box", "hemisphere"]
 
 FloatArray = npt.NDArray[np.float64]
-
-SLOPE_SIZES: tuple[tuple[int, int], ...] = (
-    (20, 14),
-    (28, 20),
-    (40, 28),
-    (52, 40),
-    (72, 52),
-    (104, 76),
-    (144, 104),
-    (208, 152),
-    (288, 216),
-    (400, 304),
-)
-"""Radii and azimuths in slope space; a lobe at grazing incidence needs more of the former."""
-
-SMOOTH_SIZES: tuple[tuple[int, int], ...] = (
-    (14, 10),
-    (26, 18),
-    (40, 28),
-    (59, 40),
-    (84, 60),
-    (120, 88),
-    (168, 128),
-    (240, 184),
-    (340, 264),
-    (480, 376),
-)
-"""The same for an integrand known to be smooth: 4088 nodes in four rules give twelve digits of GGX."""
-
-SPLIT_SIZES: tuple[tuple[int, int], ...] = (
-    (14, 10),
-    (18, 14),
-    (24, 20),
-    (32, 28),
-    (44, 40),
-    (60, 56),
-    (84, 80),
-    (120, 112),
-    (160, 160),
-    (200, 240),
-)
-"""Radii and azimuths of each part of a rule that is cut at the circle cosθi = cosθo."""
-
-WIDTHS = (1.35, 0.8, 1.2, 1.0, 0.9, 1.1, 0.85, 1.0, 0.9, 1.1)
-"""Factors on the lobe's width, so that consecutive rules do not fail in the same way."""
-
-SMOOTH_WIDTHS = (1.1, 0.9, 1.0, 1.05, 0.95, 1.1, 0.9, 1.0, 0.95, 1.05)
-"""The same where rules are known to converge: less off, since they are best near the width itself."""
 
 STEEPNESS = 0.01 * float(np.finfo(float).eps)
 """Rounding, relative to the sum of absolute terms, times the lobe's width and cosθo; at most 0.007 eps."""
@@ -158,6 +113,9 @@ def hemisphere(
 
     Raises
     ------
+    ParameterError
+        When ``wo`` is not above the horizon, the integrand is not callable, ``width`` is not above 0, or a
+        tolerance is negative.
     NonFiniteError
         When the integrand is NaN or infinite somewhere.
 
@@ -166,7 +124,12 @@ def hemisphere(
     True
     """
     start = time.perf_counter()
-    wo = np.asarray(wo, dtype=float)
+    check_integration(integrand, rtol=rtol, atol=atol)
+    check_above_zero(width=width)
+    above = "a direction of shape (3,) above the horizon (z > 0)"
+    wo = vectors("wo", wo, above)
+    if wo.ndim > 1 or not (np.all(np.isfinite(wo)) and wo[2] > 0):
+        raise ParameterError("wo", wo.tolist(), above)
     spent = 0
     if width is not None:
         core = width

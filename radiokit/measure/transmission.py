@@ -14,8 +14,9 @@ from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 from radiokit.measure.converge import GK21, ROUNDING, Integrand, RuleSum, apply_rule, converge
 from radiokit.measure.curves import Curve, critical
+from radiokit.measure.ladders import WIDTHS
 from radiokit.measure.lattice import kronecker
-from radiokit.measure.quadrature import STEEPNESS, WIDTHS, hemisphere
+from radiokit.measure.quadrature import STEEPNESS, hemisphere
 from radiokit.measure.refraction import refracted, refracted_map, refracted_rule, rest_rule
 from radiokit.measure.scan import SCAN, missed
 from radiokit.measure.slope import PROBE_WIDTH, mirrored, slope_map

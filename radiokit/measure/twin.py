@@ -67,6 +67,8 @@ class Twin:
     arguments: tuple[sympy.Symbol, ...] = field(default_factory=_direction_symbols)
 
     def __post_init__(self) -> None:
+        if not hasattr(self.expression, "free_symbols"):
+            raise ParameterError("expression", self.expression, "a SymPy expression")
         unbound = self.expression.free_symbols - set(self.arguments) - set(self.parameters)
         if unbound:
             names = ", ".join(sorted(map(str, unbound)))

@@ -103,12 +103,6 @@ class DiskView:
         nearest, farthest = self.reach
         return 2 * math.pi * (self.depth / nearest) * (self.depth / farthest) * self.radius**2 / self._sum
 
-    def sideways(self) -> float:
-        """Return E/L [sr] of the whole disk along the direction of offset, which is above the horizon."""
-        nearest, farthest = self.reach
-        middle = 0.5 * (nearest + farthest)
-        return math.pi * (self.depth / nearest) * (self.radius / middle) ** 2 * (self.offset / farthest)
-
     def whole(self, *, height: float, facing: float) -> float:
         """Return E/L [sr] on a receiver that sees the whole disk.
 

@@ -142,10 +142,6 @@ class Plate:
         )
         return Estimate(share, error, "truncation", evaluations, method="integral along the disk's edge")
 
-    def cut_by(self, normal: FloatArray) -> bool:
-        """Return whether the horizon of a receiver's normal (3,) cuts the disk."""
-        return self.cone.to_half_space(rational(normal)) == "across"
-
 
 def _axes(normal: tuple[float, ...], v: RationalVector, steps: Fraction, tilt: float) -> FloatArray:
     """Return the cone's axes, ``tilt`` from the way across towards the centre's side."""

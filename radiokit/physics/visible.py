@@ -26,7 +26,6 @@ __all__ = [
     "groove_visible",
     "groove_visible_density",
     "reflected_density",
-    "refracted_density",
     "visible_density",
 ]
 
@@ -49,8 +48,8 @@ SLOPES_SOURCE = Source(
 _PER_ROOT_PI, _ROOT_PI, _EIGHT_PER_PI = 0.5641895835477563, 1.772453850905516, 2.5464790894703255
 _LEAST, _LEAST_SINE = 2.0**-54, 1e-145
 _FAR = 100.0  # a slope that no sample reaches
-_WINITZKI = 0.147  # erf²t ≈ 1 − exp(−t² (4/π + at²)/(1 + at²)), to 2 in a thousand
-_PER_WINITZKI, _CENTRE = 6.802721088435374, 4.330746750799873  # 1/a and 2/(πa)
+# Winitzki: erf²t ≈ 1 − exp(−t² (4/π + at²)/(1 + at²)) with a = 0.147, to 2 in a thousand. 1/a and 2/(πa):
+_PER_WINITZKI, _CENTRE = 6.802721088435374, 4.330746750799873
 
 
 @kernel
@@ -185,18 +184,6 @@ def reflected_density(density: Any, area_o: Any) -> Any:
     0.5
     """
     return 0.25 * density / area_o
-
-
-@kernel
-def refracted_density(density: Any, share: Any, area_o: Any, eta: Any) -> Any:
-    """Return the density [sr⁻¹] of directions that visible normals refract, from D(ĥ) and σ(o).
-
-    ``share`` is that of ``facet.refraction_share`` and ``eta`` its index.
-
-    >>> float(refracted_density(1.0, 0.5, 0.5, 2.0))
-    4.0
-    """
-    return density * share * (eta * eta) / area_o
 
 
 @kernel

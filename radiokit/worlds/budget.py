@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from radiokit.facts.checking import check_above_zero
 from radiokit.facts.errors import ParameterError
 from radiokit.facts.estimate import Estimate
 
@@ -63,8 +64,7 @@ class Purse:
     """The budget of a whole call. Each term that must be integrated gets an equal share of what is left."""
 
     def __init__(self, seconds: float | None, evaluations: int | None, terms: int) -> None:
-        if seconds is not None and not (isinstance(seconds, (int, float, np.number)) and seconds > 0):
-            raise ParameterError("seconds", seconds, "above 0, or None")
+        check_above_zero(seconds=seconds)
         whole = type(evaluations) is int or isinstance(evaluations, np.integer)
         if evaluations is not None and not (whole and evaluations >= 1):
             raise ParameterError("evaluations", evaluations, "an integer, at least 1, or None")

@@ -9,7 +9,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from radiokit.facts.jsonable import jsonable
 from radiokit.measure import lowdiscrepancy
@@ -21,8 +20,6 @@ from radiokit.worlds.sampling import BLOCK, ZENITH, Sampler, best_sampling
 from radiokit.worlds.terms import DELTA_LIGHT, DELTA_LOBES, MAX_SAMPLES, Term
 
 __all__ = ["Cost", "Pilot", "foretell"]
-
-FloatArray = npt.NDArray[np.float64]
 
 PILOT = 512
 """Lattice samples from which a variance is foretold."""

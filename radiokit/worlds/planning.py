@@ -18,7 +18,7 @@ from radiokit.facts.errors import ParameterError, RadiokitError, UnknownNameErro
 from radiokit.worlds.budget import Budget
 from radiokit.worlds.pilot import Cost, Pilot, foretell
 from radiokit.worlds.sampling import best_sampling
-from radiokit.worlds.scene import Receiver, check_emitter
+from radiokit.worlds.scene import Receiver, check_emitter, check_rtol
 from radiokit.worlds.terms import DELTA_LIGHT, DELTA_LOBES, SMOOTH, Term
 
 __all__ = [
@@ -148,12 +148,13 @@ def find_terms(
     """Check the arguments of ``shade`` and return the material's name and the terms."""
     if method not in METHODS:
         raise UnknownNameError("method", method, METHODS)
-    if not 0 < rtol < 1:
-        raise ParameterError("rtol", rtol, "in (0, 1)")
+    check_rtol(rtol)
     model = as_bsdf(f)
     receiver = Receiver(normal, position)
     local = receiver.to_local(receiver.axis if wo is None else check_direction("wo", wo))
-    lights: Sequence[Any] = [emitters] if isinstance(emitters, Emitter) else list(emitters)
+    lights: Sequence[Any] = [emitters]
+    if isinstance(emitters, Iterable) and not isinstance(emitters, Emitter):
+        lights = list(emitters)
     terms: list[Term] = []
     for light in map(check_emitter, lights):
         parts = (DELTA_LIGHT,) if light.delta else (DELTA_LOBES, SMOOTH)

@@ -22,7 +22,6 @@ from radiokit.worlds.terms import MAX_SAMPLES, Term
 __all__ = [
     "BLOCK",
     "MIS_SOURCE",
-    "STRATEGIES",
     "ZENITH",
     "Sampler",
     "best_sampling",
@@ -31,8 +30,6 @@ __all__ = [
 ]
 
 FloatArray = npt.NDArray[np.float64]
-
-STRATEGIES = ("mc-bsdf", "mc-light", "mis")
 
 MIS_SOURCE = Source(
     authors="Veach, Guibas",

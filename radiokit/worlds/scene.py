@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -90,6 +91,12 @@ def check_emitter(emitter: Any) -> Emitter:
     return emitter
 
 
+def check_rtol(rtol: Any) -> None:
+    """Refuse a relative tolerance that is no number in (0, 1)."""
+    if not isinstance(rtol, Real) or not 0 < float(rtol) < 1:
+        raise ParameterError("rtol", rtol, "in (0, 1)")
+
+
 def irradiance(
     emitter: Emitter,
     *,
@@ -118,13 +125,15 @@ def irradiance(
     Raises
     ------
     ParameterError
-        When ``normal`` or ``position`` is no vector, or the receiver lies on the light or an occluder.
+        When ``normal`` or ``position`` is no vector, ``rtol`` is out of range, or the receiver lies on the
+        light or an occluder.
 
     >>> from radiokit.emitters.directional import Directional
     >>> sun = Directional(direction=(0, 3, 4), irradiance=1000.0)
     >>> irradiance(sun).value
     800.0
     """
+    check_rtol(rtol)
     receiver = Receiver(normal, position)
     light = behind(emitter, occluders, receiver)
     start = time.perf_counter()
@@ -179,9 +188,15 @@ def solid_angle(
     position: npt.ArrayLike = (0.0, 0.0, 0.0),
     occluders: Occluder | Iterable[Occluder] = (),
 ) -> Estimate:
-    """Return the solid angle [sr] of an emitter from ``position`` (3,) [m]; 0 for a delta light.
+    """Return the solid angle [sr] of an emitter; 0 for a delta light.
 
-    With ``occluders``, that of what is seen of it behind them.
+    Parameters
+    ----------
+    emitter : Emitter
+    position : array_like, shape (3,)
+        Where it is seen from [m].
+    occluders : Occluder or iterable of Occluder
+        Only what is seen of the emitter behind them counts.
 
     Raises
     ------

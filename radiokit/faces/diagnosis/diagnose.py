@@ -47,7 +47,7 @@ def diagnose(
     error: npt.ArrayLike | None = None,
     language: str = "en",
     rtol: float | None = None,
-    catalogue: Sequence[Misconception] = CATALOGUE,
+    catalogue: Sequence[Misconception] | None = None,
 ) -> Diagnosis:
     """Say which misconception explains a wrong answer.
 
@@ -71,8 +71,9 @@ def diagnose(
         ``"en"`` or ``"ru"``.
     rtol : float, optional
         The relative deviation that rounding explains, in (0, 0.1]; 1e-6, or 2e-5 for answers in float32.
-    catalogue : sequence of Misconception
-        What to look for; ``(*radiokit.faces.diagnosis.catalogue.CATALOGUE, mine)`` adds one.
+    catalogue : sequence of Misconception, optional
+        What to look for, all that is known by default;
+        ``(*radiokit.faces.diagnosis.catalogue.CATALOGUE, mine)`` adds one.
 
     Returns
     -------
@@ -96,9 +97,10 @@ def diagnose(
     """
     if language not in LANGUAGES:
         raise ParameterError("language", language, " or ".join(map(repr, LANGUAGES)))
-    problem = read(answer, reference, inputs or {}, variants, error, rtol)
+    problem = read(answer, reference, {} if inputs is None else inputs, variants, error, rtol)
     text = TEXTS[language]
-    entries = (*catalogue, *_variant_entries(variants, catalogue))
+    known = CATALOGUE if catalogue is None else catalogue
+    entries = (*known, *_variant_entries(variants, known))
     seen, _ = _fits(problem, [entry for entry in entries if entry.seen], -1.0)
     suspicions = [_suspicion(fit, 1.0, language) for fit in seen]
     largest = np.maximum(np.abs(problem.reference), 1e-13 * problem.scale + 1e-300)

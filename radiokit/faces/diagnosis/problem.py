@@ -47,6 +47,8 @@ def columns(inputs: Mapping[str, Any], count: int) -> dict[str, Array]:
     >>> columns({"distance": 2}, 3)["distance"]
     array([2., 2., 2.])
     """
+    if not isinstance(inputs, Mapping):
+        raise ParameterError("inputs", inputs, "a mapping of names to numbers, such as {'theta': [0.1, 0.2]}")
     result = {}
     for name, given in inputs.items():
         shape = (count, 3) if name in _VECTORS else (count,)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -36,7 +37,7 @@ def read(
     right, given = _numbers("reference", reference), _numbers("answer", answer)
     if rtol is None:
         rtol = 2e-5 if np.asarray(answer).dtype == np.float32 else 1e-6
-    if not 0 < rtol <= 0.1:
+    if not isinstance(rtol, Real) or not 0 < rtol <= 0.1:
         raise ParameterError("rtol", rtol, "in (0, 0.1]")
     if not np.all(np.isfinite(right)):
         raise ParameterError("reference", reference, "finite")

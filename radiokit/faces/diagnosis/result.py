@@ -86,6 +86,11 @@ class Diagnosis:
 
     ``right`` says whether the answer agrees; ``deviation`` is the largest relative deviation;
     ``ambiguous`` names the suspicions that the inputs cannot tell apart. True when there is a suspicion.
+
+    >>> from radiokit.faces.diagnosis.diagnose import diagnose
+    >>> found = diagnose([2.0, 6.0], [1.0, 3.0])
+    >>> found.right, bool(found), found.first.name, found.deviation
+    (False, True, 'doubled', 1.0)
     """
 
     right: bool

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import sympy
 
-__all__ = ["Step", "chain", "eq", "follows", "holds", "premise"]
+__all__ = ["Step", "eq", "follows", "holds", "premise"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,8 +100,3 @@ def follows(
 def holds(relation: Any, why: str, *using: str | tuple[str, Any], label: str = "") -> Step:
     """Return an inequality that follows from earlier steps."""
     return Step(relation=relation, why=why, label=label or "limit", using=tuple(using))
-
-
-def chain(left: Any, *lines: tuple[Any, ...] | Sequence[Any]) -> tuple[Step, ...]:
-    """Return ``left`` = … = …: each line is (expression, why, *using), as ``follows`` takes them."""
-    return tuple(follows(left, line[0], line[1], *line[2:]) for line in lines)

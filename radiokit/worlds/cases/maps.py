@@ -8,10 +8,10 @@ from radiokit.bsdfs.ggx import GGX
 from radiokit.bsdfs.lambert import Lambert
 from radiokit.bsdfs.phong import Phong
 from radiokit.contracts.bsdf import BSDF
-from radiokit.contracts.vectors import Triple
 from radiokit.emitters.environment import Environment
 from radiokit.facts.source import Source
 from radiokit.worlds.cases.catalogue import Case, Scene, shading_case
+from radiokit.worlds.cases.skies import towards
 
 __all__ = ["CASES"]
 
@@ -25,11 +25,6 @@ _POLYGON = Source(
 _CELL = "one cell of a latitude–longitude map"
 _GGX = "GGX with α = 1, height-correlated Smith masking and Fresnel factor 1"
 _PHONG = "Modified Phong, f = (n + 2)/2π · cosⁿα with n = 10"
-
-
-def _towards(tilt_deg: float) -> Triple:
-    tilt, rest = math.radians(tilt_deg), math.radians(90 - tilt_deg)
-    return (math.sin(tilt), 0.0, math.sin(rest))
 
 
 def _facing_zenith(
@@ -49,7 +44,7 @@ def _facing_zenith(
         exact=exact,
         derivation=derivation,
         source=f.SOURCE,
-        scene=Scene(f=f, emitters=(light,), wo=_towards(wo_deg)),
+        scene=Scene(f=f, emitters=(light,), wo=towards(wo_deg)),
         tags=("environment", f.name),
     )
 
@@ -67,7 +62,7 @@ _TEXEL_WORDS = (
 
 
 def _octant(tilt_deg: float) -> Case:
-    x, _, z = _towards(tilt_deg)
+    x, _, z = towards(tilt_deg)
     normal = (-x + 0.0, 0.0, z)
     return shading_case(
         name=f"lambert-under-bright-octant-tilted-{tilt_deg:g}deg",

@@ -56,11 +56,6 @@ def _cosine_of(theta_deg: float) -> float:
     return math.sin(math.radians(round(90 - theta_deg, 9)))  # of 0.001°, and not 0.00100000000000477°
 
 
-def _peak(alpha: float, theta_deg: float) -> float:
-    root = math.hypot(_cosine_of(theta_deg), alpha * math.sin(math.radians(theta_deg)))
-    return 2.0 / (4 * math.pi * alpha**2 * root)
-
-
 def _inverse_square(text: str, distance: float) -> Case:
     return _case(
         f"lambert-under-point-at-{text.replace(' ', '')}",

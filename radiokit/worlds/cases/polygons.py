@@ -24,7 +24,7 @@ from radiokit.physics import axial_moments
 from radiokit.physics.polygon import IRRADIANCE_SOURCE
 from radiokit.worlds.cases.catalogue import Case, Scene, shading_case
 
-__all__ = ["CASES"]
+__all__ = ["CASES", "corner_irradiance"]
 
 Triple = tuple[float, float, float]
 
@@ -55,7 +55,7 @@ _MOMENT = (
 )
 
 
-def _corner(a: float, b: float) -> float:
+def corner_irradiance(a: float, b: float) -> float:
     """Return the irradiance of a rectangle a × b of radiance 1 whose corner is at height 1 overhead."""
     p, q = math.hypot(1.0, a), math.hypot(1.0, b)
     return 0.5 * (a / p * math.atan(b / p) + b / q * math.atan(a / q))
@@ -66,7 +66,7 @@ def _overhead(side: float, text: str, *, left_out: tuple[str, ...] = (), note: s
         f"lambert-under-square-of-{text.replace(' ', '')}",
         f"Lambert under a square of {text}",
         f"a square of {text} × {text}, parallel to the surface and centred 1 m above it{note}",
-        4 * _corner(side / 2, side / 2) * REFLECTANCE / math.pi,
+        4 * corner_irradiance(side / 2, side / 2) * REFLECTANCE / math.pi,
         _PARALLEL + "here four of them.",
         Rectangle(center=(0.0, 0.0, 1.0), normal=(0.0, 0.0, -1.0), width=side, height=side),
         source=CORNER,
@@ -186,7 +186,7 @@ CASES: tuple[Case, ...] = (
         "lambert-under-ell",
         "Lambert under an L",
         _ELL,
-        (2 * _corner(1.0, 2.0) - _corner(1.0, 1.0)) * REFLECTANCE / math.pi,
+        (2 * corner_irradiance(1.0, 2.0) - corner_irradiance(1.0, 1.0)) * REFLECTANCE / math.pi,
         _PARALLEL + r"here $2E(1, 2) - E(1, 1)$.",
         _shining_down(ELL),
         source=CORNER,

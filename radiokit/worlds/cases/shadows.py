@@ -24,6 +24,7 @@ from radiokit.physics.cap import CAP_SOURCE
 from radiokit.physics.disk import DISK_SOURCE
 from radiokit.physics.polygon import IRRADIANCE_SOURCE
 from radiokit.worlds.cases.catalogue import Case, Scene, shading_case
+from radiokit.worlds.cases.polygons import corner_irradiance
 
 __all__ = ["CASES"]
 
@@ -31,8 +32,6 @@ Triple = tuple[float, float, float]
 
 _HALF = Lambert(reflectance=0.5)
 _DIFFUSE = "A diffuse surface of reflectance 0.5, seen along its normal, "
-_MISSED = " Samples of the material hardly ever meet so small a light."
-_UNMISSED = " Samples of the material all but never miss so large a light."
 _SKY = Constant(radiance=1.0, normal=(0.0, 0.0, 1.0))
 _SUN = Sphere(center=(0.0, 0.0, 4.0), radius=1.0, radiance=1.0)
 _SQUARE = Rectangle(center=(0.0, 0.0, 1.0), normal=(0.0, 0.0, -1.0), width=2.0, height=2.0)
@@ -64,12 +63,6 @@ def _case(
         tags=("shadow", light.name, f.name),
         left_out=left_out,
     )
-
-
-def _corner(a: float, b: float) -> float:
-    """Return the irradiance of a rectangle a × b of radiance 1 whose corner is at height 1 overhead."""
-    p, q = math.hypot(1.0, a), math.hypot(1.0, b)
-    return 0.5 * (a / p * math.atan(b / p) + b / q * math.atan(a / q))
 
 
 def _level(x: tuple[float, float], y: tuple[float, float], height: float) -> Wall:
@@ -187,7 +180,7 @@ CASES: tuple[Case, ...] = (
         "Lambert under a square, one half of which is hidden",
         f"{_DIFFUSE}under a square of 2 m × 2 m and radiance 1 W/m²/sr, centred 1 m above, behind an opaque "
         "rectangle with 0 ≤ x ≤ 10 m, |y| ≤ 10 m at half that height.",
-        2 * _corner(1.0, 1.0) * 0.5 / math.pi,
+        2 * corner_irradiance(1.0, 1.0) * 0.5 / math.pi,
         r"By symmetry half of the light of the square is left, two of the four rectangles $1 \times 1$ with "
         r"a corner overhead, each of $E = \frac{L}{\sqrt 2} \arctan\frac{1}{\sqrt 2}$.",
         _SQUARE,
@@ -199,7 +192,9 @@ CASES: tuple[Case, ...] = (
         "Lambert under a square behind a corner of another",
         f"{_DIFFUSE}under a square of 2 m × 2 m and radiance 1 W/m²/sr, centred 1 m above, behind an opaque "
         "square from (0.25, 0.25) to (0.75, 0.75) m at half that height.",
-        0.5 / math.pi * (3 * _corner(1.0, 1.0) + 2 * _corner(0.5, 1.0) - _corner(0.5, 0.5)),
+        0.5
+        / math.pi
+        * (3 * corner_irradiance(1.0, 1.0) + 2 * corner_irradiance(0.5, 1.0) - corner_irradiance(0.5, 0.5)),
         "The shadow, twice as large at the light's height, hides $[1/2, 1]^2$ m. With $E(a, b)$ of a "
         "rectangle that has a corner overhead, $E = 4 E(1, 1) - [E(1, 1) - 2 E(1/2, 1) + E(1/2, 1/2)]$.",
         _SQUARE,
@@ -211,7 +206,7 @@ CASES: tuple[Case, ...] = (
         "Lambert under a square with something behind it",
         f"{_DIFFUSE}under a square of 2 m × 2 m and radiance 1 W/m²/sr, centred 1 m above; 2 m above is an "
         "opaque square as large.",
-        4 * _corner(1.0, 1.0) * 0.5 / math.pi,
+        4 * corner_irradiance(1.0, 1.0) * 0.5 / math.pi,
         r"What is behind a light hides nothing: $E = 4 E(1, 1)$, $E(1, 1) = \frac{L}{\sqrt 2} "
         r"\arctan\frac{1}{\sqrt 2}$.",
         _SQUARE,
@@ -223,7 +218,7 @@ CASES: tuple[Case, ...] = (
         "Lambert in a courtyard",
         f"{_DIFFUSE}under a sky of radiance 1 W/m²/sr, in the middle of a square yard of 2 m × 2 m, between "
         "dark walls of 1 m height that stand on its own level.",
-        4 * _corner(1.0, 1.0) * 0.5 / math.pi,
+        4 * corner_irradiance(1.0, 1.0) * 0.5 / math.pi,
         r"The walls touch the horizon and leave the sky in the square of 2 m × 2 m that their tops bound: "
         r"$E = 4 E(1, 1)$, $E(1, 1) = \frac{L}{\sqrt 2} \arctan\frac{1}{\sqrt 2}$.",
         _SKY,

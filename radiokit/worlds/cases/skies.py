@@ -18,7 +18,7 @@ from radiokit.facts.source import Source
 from radiokit.measure.cancelling import sine_minus_x_cosine
 from radiokit.worlds.cases.catalogue import Case, Scene, shading_case
 
-__all__ = ["CASES"]
+__all__ = ["CASES", "towards"]
 
 _GROUND = Source(
     authors="Liu, Jordan",
@@ -37,7 +37,8 @@ _LUNE = (
 _OVERCAST = "the CIE's standard overcast sky, L = (1 + 2 cosθ)/3 at θ from the zenith"
 
 
-def _towards(tilt_deg: float) -> Triple:
+def towards(tilt_deg: float) -> Triple:
+    """Return the direction ``tilt_deg`` off z, with a cosine that keeps its digits near the horizon."""
     tilt, rest = math.radians(tilt_deg), math.radians(90 - tilt_deg)
     return (math.sin(tilt), 0.0, math.sin(rest))
 
@@ -50,7 +51,7 @@ def _moments(tilt_deg: float) -> tuple[float, float, float]:
 
 
 def _slope(name: str, title: str, words: str, sky: Emitter, law: str, exact: float, tilt_deg: float) -> Case:
-    normal = _towards(tilt_deg)
+    normal = towards(tilt_deg)
     return shading_case(
         name=f"lambert-under-{name}-tilted-{tilt_deg:g}deg",
         title=f"Lambert under {title}, tilted by {tilt_deg:g}°",
@@ -92,7 +93,7 @@ def _quadratic(tilt_deg: float) -> Case:
 
 def _plain(tilt_deg: float) -> Case:
     half = math.radians(tilt_deg) / 2
-    normal = _towards(tilt_deg)
+    normal = towards(tilt_deg)
     return shading_case(
         name=f"lambert-between-sky-and-ground-tilted-{tilt_deg:g}deg",
         title=f"Lambert between sky and ground, tilted by {tilt_deg:g}°",
@@ -161,13 +162,13 @@ def _facing_zenith(
         exact=exact,
         derivation=derivation,
         source=f.SOURCE,
-        scene=Scene(f=f, emitters=(light,), wo=_towards(wo_deg)),
+        scene=Scene(f=f, emitters=(light,), wo=towards(wo_deg)),
         tags=("sky", f.name),
     )
 
 
 def _ggx_overcast(theta_deg: float) -> Case:
-    mu = _towards(theta_deg)[2]
+    mu = towards(theta_deg)[2]
     return _facing_zenith(
         f"ggx-1-under-overcast-sky-at-{theta_deg:g}deg",
         f"GGX, α = 1, under the overcast sky at {theta_deg:g}°",
@@ -210,7 +211,7 @@ CASES: tuple[Case, ...] = (
         "ggx-1-under-quadratic-sky",
         "GGX, α = 1, under a quadratic sky",
         f"{_GGX}, facing the zenith and seen 60° off its normal, under a sky of radiance cos²θ.",
-        _ggx_moment(2, _towards(60.0)[2]),
+        _ggx_moment(2, towards(60.0)[2]),
         _GGX_ONE + r"$J_2$.",
         GGX(alpha=1.0),
         SkyGradient(radiance=1.0, horizon=0.0, curvature=1.0),

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from radiokit.contracts.vectors import as_point
-from radiokit.facts.checking import reject
+from radiokit.facts.checking import check_above_zero, reject
 from radiokit.facts.directions import check_directions, dot
 from radiokit.facts.errors import ParameterError, RadiokitError, UnknownNameError
 from radiokit.facts.estimate import Estimate
@@ -134,7 +134,20 @@ def irradiance(
 ) -> Estimate:
     """Return the irradiance [W m⁻²] of a point of a wall, from the lamps and from all other walls.
 
-    Parameters and errors are those of ``radiance``.
+    Parameters
+    ----------
+    room : Sphere or Box
+    position : array_like, shape (3,) or (N, 3)
+        Of the points [m], on the room's wall.
+    method, samples, rtol, seconds, rng, executor
+        As for ``radiance``.
+
+    Raises
+    ------
+    ParameterError
+        When a point is not on the wall, or another argument is out of its range.
+    UnknownNameError
+        When there is no such method.
 
     >>> from radiokit.bsdfs.lambert import Lambert
     >>> from radiokit.worlds.enclosure import Box, Wall
@@ -167,7 +180,14 @@ def flux(
     part : int
         0 for a sphere's wall and k for its k-th cap; 0 to 5 for the faces of a box at −x, +x, −y, +y, −z, +z.
     method, samples, rtol, seconds, rng, executor
-        As for ``radiance``, whose errors are raised here too.
+        As for ``radiance``.
+
+    Raises
+    ------
+    ParameterError
+        When there is no such part, or another argument is out of its range.
+    UnknownNameError
+        When there is no such method.
 
     >>> from radiokit.bsdfs.lambert import Lambert
     >>> from radiokit.worlds.enclosure import Cap, Sphere, Wall
@@ -227,6 +247,7 @@ def _answer(
     """Return the answer in closed form or by following paths."""
     if effort.method not in METHODS:
         raise UnknownNameError("method", effort.method, METHODS)
+    check_above_zero(rtol=effort.rtol, seconds=effort.seconds)
     start = time.perf_counter()
     if all(wall.absorbs_nothing for wall in room.parts):
         allowed = "with a wall that absorbs: with an albedo of 1 the radiance in a closed room diverges"

@@ -48,7 +48,10 @@ class Box(Room):
     high: Triple = (1.0, 1.0, 1.0)
 
     def __post_init__(self) -> None:
-        walls = (self.walls,) * 6 if isinstance(self.walls, Wall) else tuple(self.walls)
+        try:
+            walls = (self.walls,) * 6 if isinstance(self.walls, Wall) else tuple(self.walls)
+        except TypeError:
+            walls = ()
         if len(walls) != 6:
             raise ParameterError("walls", self.walls, "one Wall, or six: at −x, +x, −y, +y, −z, +z")
         for index, wall in enumerate(walls):

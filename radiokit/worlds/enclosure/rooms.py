@@ -148,7 +148,10 @@ def check_wall(name: str, wall: Any) -> None:
 
 
 def _lights(lights: Any) -> tuple[Lamp, ...]:
-    found = (lights,) if isinstance(lights, Lamp) else tuple(lights)
+    try:
+        found = (lights,) if isinstance(lights, Lamp) else tuple(lights)
+    except TypeError:
+        found = (lights,)
     for light in found:
         if not isinstance(light, Lamp):
             raise ParameterError("lights", light, "point lights, or rectangles in the faces of a box")

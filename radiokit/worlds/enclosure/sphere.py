@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -87,7 +88,7 @@ class Sphere(Room):
         check_wall("wall", self.wall)
         object.__setattr__(self, "caps", tuple(self.caps))
         object.__setattr__(self, "center", as_point("center", self.center))
-        if not (0 < self.radius < math.inf):
+        if not (isinstance(self.radius, Real) and 0 < self.radius < math.inf):
             raise ParameterError("radius", self.radius, "a number in (0, inf)")
         for index, cap in enumerate(self.caps):
             if not isinstance(cap, Cap):

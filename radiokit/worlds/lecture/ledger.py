@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from html import escape
+from numbers import Integral
 from typing import Any
 
 from radiokit.facts.errors import ParameterError, UnknownNameError
@@ -260,9 +261,10 @@ def _chosen(slide: int | str | None) -> Iterable[Entry]:
         if not wanted:
             raise ParameterError("slide", slide, "a part of a slide's title, or its number")
     else:
-        wanted = {int(slide)}
-        if not 1 <= int(slide) <= len(TITLES):
+        number = int(slide) if isinstance(slide, (str, Integral)) else 0
+        if not 1 <= number <= len(TITLES):
             raise ParameterError("slide", slide, f"a number from 1 to {len(TITLES)}, or a part of a title")
+        wanted = {number}
     return [entry for entry in found if entry.slide in wanted]
 
 

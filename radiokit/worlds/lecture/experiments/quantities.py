@@ -10,6 +10,7 @@ from radiokit.contracts.emitter import emitter
 from radiokit.facts.errors import QuantityKindError
 from radiokit.facts.quantities import Q, quantity
 from radiokit.facts.verdict import Verdict
+from radiokit.physics import photometry, planck
 from radiokit.worlds.lecture.deciding import found
 from radiokit.worlds.scene import irradiance, solid_angle
 
@@ -31,7 +32,7 @@ __all__ = [
     "total_flux",
 ]
 
-_DOWN, _UP = (0.0, 0.0, -1.0), (0.0, 0.0, 1.0)
+_DOWN = (0.0, 0.0, -1.0)
 
 
 def calorimeter(losses: float, absorptance: float = 1.0) -> Verdict:
@@ -179,24 +180,18 @@ def four_pi_lumens() -> Verdict:
 
 def observer() -> tuple[Verdict, ...]:
     """1 W of green and of red as the standard observer weighs them."""
-    green, red = (683 * float(_efficiency(np.array(nm))) for nm in (555.0, 680.0))
+    green, red = (683 * float(photometry.luminous_efficiency(wavelength_nm=nm)) for nm in (555.0, 680.0))
     return (
-        found("1 W of green is 683 lm", green, 683.0, 14.0, f"1 W at 555 nm is {green:.0f} lm"),
-        found("of red far less", red < 0.05 * green, True, 0, f"1 W at 680 nm is {red:.0f} lm"),
+        found("1 W of green is 683 lm", green, 683.0, 0.01, f"1 W at 555 nm is {green:.1f} lm"),
+        found("of red far less", red < 0.05 * green, True, 0, f"1 W at 680 nm is {red:.1f} lm"),
     )
 
 
 def platinum() -> Verdict:
     """The luminance of a black body at the freezing point of platinum, once the candela's standard."""
-    wavelength = np.linspace(380e-9, 780e-9, 2001)
-    first, second = 2 * 6.62607015e-34 * 299_792_458.0**2, 1.438776877e-2  # 2hc² [W m²], hc/k [m K]
-    radiance = first / wavelength**5 / np.expm1(second / (wavelength * 2041.4))
-    luminance = 683 * float(np.trapezoid(_efficiency(1e9 * wavelength) * radiance, wavelength))
+    nm = np.linspace(380.0, 780.0, 2001)
+    radiance = planck.spectral_radiance(wavelength_nm=nm, temperature=2041.4)
+    efficacy = photometry.luminous_efficacy(wavelength_nm=nm, spectrum=radiance)
+    luminance = efficacy * float(np.trapezoid(radiance, nm))
     message = f"1 cm² of a black body at 2041.4 K has {1e-4 * luminance:.1f} cd; 60 made the standard"
-    return found("60 cd/cm²", 1e-4 * luminance, 60.0, 1.0, message)
-
-
-def _efficiency(x: np.ndarray) -> np.ndarray:
-    """Return V(λ) at wavelengths in nm, by the two lobes of Wyman, Sloan and Shirley (2013), good to 2 %."""
-    broad = 0.821 * np.exp(-0.5 * ((x - 568.8) / np.where(x < 568.8, 46.9, 40.5)) ** 2)
-    return np.asarray(broad + 0.286 * np.exp(-0.5 * ((x - 530.9) / np.where(x < 530.9, 16.3, 31.1)) ** 2))
+    return found("60 cd/cm²", 1e-4 * luminance, 60.0, 0.5, message)
