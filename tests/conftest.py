@@ -17,6 +17,11 @@ from radiokit.faces.grading.isolation.result import Result
 from radiokit.faces.plots.offscreen import offscreen
 from radiokit.facts.errors import RadiokitError
 
+LONGEST = frozenset(
+    {"test_validate.py", "test_otter.py", "test_nbgrader.py", "test_bench.py", "test_lectures.py"}
+)
+"""Files with a test, or a fixture of many, that takes 5 seconds or more."""
+
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
@@ -30,6 +35,15 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
     from xdist.scheduler import WorkStealingScheduling
 
     return WorkStealingScheduling(config, log)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with what takes longest, so that no process is left alone with it at the end.
+
+    Tests are taken over from the end of what a process was dealt: those that come first stay together, and
+    what their modules share is computed once.
+    """
+    items.sort(key=lambda item: item.path.name not in LONGEST)
 
 
 @pytest.fixture

@@ -334,6 +334,26 @@ def test_right_solutions_are_not_rejected(seed: int, local_callee: Any) -> None:
             assert found.share == 1, (trial, found.text)
 
 
+@pytest.mark.parametrize("aspect", ["value", "error", "efficiency"])
+def test_what_is_wrong_in_another_way_in_each_round_is_wrong(
+    aspect: Aspect, rng: np.random.Generator, local_callee: Any
+) -> None:
+    """Mere noise has no bias, and a number that is wrong has no noise: each fails what the other passes."""
+    judge, calls = _judge(aspect, samples=64, runs=8, cases=2), [0]
+    memory: dict[Any, Any] = {}
+
+    def sly(*asked: Any) -> Any:
+        turn = calls[0] // (2 * judge.cases * (judge.runs + 1))
+        calls[0] += 1
+        error = 1 / math.sqrt(asked[-2])
+        off = np.random.default_rng(asked[-1]).normal() * error
+        return memory.setdefault(asked, (7 + off, error) if turn % 2 else (1e4 * off, 1e4 * error))
+
+    found = judge.judge(local_callee(sly), rng, language="en", hints={}, shown=True)
+    assert found.share == 0, found.text
+    assert calls[0] > ROUNDS * 2 * judge.cases * judge.runs
+
+
 def test_a_bias_of_five_per_cent_is_always_found(seed: int, local_callee: Any) -> None:
     for trial in range(5):
         for factor in (0.95, 1.05):

@@ -337,7 +337,12 @@ def test_no_cell_becomes_a_formula(start):
     assert not [cell for cell in row if cell.lstrip().startswith(("=", "+", "-", "@"))]
 
 
-@pytest.mark.parametrize("evil", ['x;=CMD("a")', "x, @SUM(1)", 'x;" -2+3+A1', "x|+A1|A1", "＝1+1", "x; -A1"])
+EVIL_PARTS = ('x;=CMD("a")', "x, @SUM(1)", 'x;" -2+3+A1', "x|+A1|A1", "＝1+1", "x; -A1")
+EVIL_NUMBERS = ("x;-1 +CMD|' /C calc'!A0", "x;-1,5+SUM(A1);y", "x, -1.5 &A1", "x|-1 -A1", 'x;"-inf *A1')
+"""Numbers as they stand within texts, and an operator behind them."""
+
+
+@pytest.mark.parametrize("evil", EVIL_PARTS + EVIL_NUMBERS)
 def test_no_part_of_a_cell_becomes_a_formula_where_others_cut(evil):
     (_, row) = rows_of(rk.grading.to_csv([replace(GRADE, problems=(evil,))]))
     assert "'" in row[-1]
@@ -439,6 +444,16 @@ def test_text_for_a_terminal():
     assert "Lamps & caps" in printed
     assert "cosine" not in printed  # the line itself says it
     assert "\x1b[31m\x00" not in printed
+
+
+def test_no_log_takes_a_line_for_a_command_where_a_note_is_wrapped():
+    from rich.console import Console
+
+    for length in range(20):
+        console = Console(width=60, file=io.StringIO(), force_terminal=True, color_system=None)
+        console.print(to_rich(replace(GRADE, problems=("x " * (20 + length) + "::error::y",))))
+        assert "error" in console.file.getvalue()
+        assert not re.search(r"^\W*::", re.sub(r"\x1b\[\d*m", "", console.file.getvalue()), re.MULTILINE)
 
 
 @pytest.mark.parametrize(

@@ -52,7 +52,7 @@ def test_entries_are_found_as_people_and_systems_leave_them(tmp_path: Path) -> N
         "boris/deep/er/work.ipynb",
         "Cyril Lee_3_assignsubmission_file_/work.py",
         "Cyril Lee_3_assignsubmission_onlinetext_/onlinetext.html",
-        "Dora_4_assignsubmission_file_work.py",
+        "Dora_4_assignsubmission_file_anna_1_assignsubmission_file_work.py",
         "leeeve_LATE_551_7777_work.py",
         "submission_88/work.py",
         "submission_metadata.yml",
@@ -164,6 +164,9 @@ def test_an_archive_is_read_where_there_is_nothing_else(
     with zipfile.ZipFile(tmp_path / "bomb.zip", "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("work.py", "#" * 100_000)
     assert _refused(tmp_path / "bomb.zip") == "huge"
+    for name, kind in (("small.zip", zipfile.ZIP_BZIP2), ("tiny.zip", zipfile.ZIP_LZMA)):
+        with zipfile.ZipFile(tmp_path / name, "w", kind) as archive:  # of which no part alone is unpacked
+            archive.writestr("work.py", "#")
     with zipfile.ZipFile(tmp_path / "unnamed.zip", "w") as archive:
         archive.writestr("x", "")
     nameless = (tmp_path / "unnamed.zip").read_bytes().replace(b"x", b"\0")
@@ -174,7 +177,8 @@ def test_an_archive_is_read_where_there_is_nothing_else(
     spoilt = bytearray(whole.read_bytes())
     spoilt[-200] ^= 255
     (tmp_path / "spoilt.zip").write_bytes(spoilt)
-    assert {_refused(tmp_path / name) for name in ("cut.zip", "work.rar", "spoilt.zip")} == {"archive"}
+    broken = ("cut.zip", "work.rar", "spoilt.zip", "small.zip", "tiny.zip")
+    assert {_refused(tmp_path / name) for name in broken} == {"archive"}
 
 
 def test_a_roster_names_the_students_and_those_who_handed_in_nothing(tmp_path: Path) -> None:

@@ -226,6 +226,13 @@ def test_some_of_the_questions_are_graded_as_all_are(tmp_path):
         rk.grading.grade(HOMEWORK, file, questions=["cones"])
 
 
+def test_a_question_is_graded_alone_though_it_shares_its_hints(tmp_path):
+    file = tmp_path / "theirs.py"
+    file.write_text("")
+    found = rk.grading.grade("brdfs", file, questions=["phong"])
+    assert (found.complete, [question.name for question in found.questions]) == (True, ["phong"])
+
+
 def test_the_texts_have_both_languages():
     from radiokit.faces.grading.handout.texts import TEXTS
 

@@ -227,6 +227,27 @@ def test_a_channel_that_no_longer_waits_is_mended_for_the_next_part(tmp_path):
         assert large.ok, large.error
 
 
+def test_a_pipe_whose_other_end_is_open_to_others_is_waited_for(tmp_path, monkeypatch):
+    """A submission that runs as the grader's own user may read what it writes, and write what it reads."""
+    calls, missed = {name: getattr(os, name) for name in ("read", "write")}, []
+
+    def late(name):
+        def call(*arguments):
+            if missed.count(name) < 2:
+                missed.append(name)
+                raise BlockingIOError
+            return calls[name](*arguments)
+
+        return call
+
+    with Sandbox("theirs.py", content=b"def honest(x): return 2 * x") as sandbox:
+        assert sandbox.load().ok
+        for name in calls:
+            monkeypatch.setattr(os, name, late(name))
+        assert sandbox.call("honest", 1.0).values == (2.0,)
+    assert sorted(missed) == ["read", "read", "write", "write"]
+
+
 def test_a_question_of_two_parts_has_its_time_once(tmp_path, monkeypatch):
     spent = []
     call = G.Sandbox.call
@@ -247,3 +268,25 @@ def test_a_question_of_two_parts_has_its_time_once(tmp_path, monkeypatch):
     assert spent[0] >= 1  # the second part is told at once
     assert spent[1] == 0
     assert found["honest"].score == 1
+
+
+def test_copies_and_names_take_their_time_from_their_question(tmp_path):
+    path = tmp_path / "submission.py"
+    path.write_text(
+        "import os, time\n"
+        "os.register_at_fork(before=lambda: time.sleep(0.6))\n"
+        "def attack(x): return x\n"
+        "def __getattr__(name):\n"
+        "    time.sleep(20 * (name == 'honest'))\n"
+        "    raise AttributeError(name)\n",
+        encoding="utf-8",
+    )
+    work = assignment(1)
+    (first, other) = (dataclasses.replace(each, seconds=1) for each in work.questions)
+    parts = [dataclasses.replace(first.parts[0], name=name) for name in ("hard", "ordinary", "energy")]
+    found = G.grade(
+        dataclasses.replace(work, questions=(dataclasses.replace(first, parts=parts), other)), path
+    )
+    assert all(re.search(SLOW, part.text) for part in found["attack"].parts[1:])
+    assert "defines no function honest" in found["honest"].explanation
+    assert found.seconds["honest"] < work.limits.seconds

@@ -231,6 +231,14 @@ def test_black_and_constant_earn_nothing_where_something_else_is_asked_for(coars
     assert judged(lambda wi, wo: lambert(wi, wo, 0.5), reference=lambda: Lambert(reflectance=0.5)).share == 1
 
 
+def test_what_hides_from_the_comparison_is_no_model_either(coarse):
+    def shy(wi, wo):  # it knows by their number which directions are compared
+        return np.full(len(wi), np.nan) if len(wi) == PAIRS else lambert(wi, wo, 0.5)
+
+    found = judged(shy, reference=exact_blinn)
+    assert (found.share, found.diagnosis) == (0.0, "not-the-model")
+
+
 def test_the_misconception_is_named_beside_the_law(coarse):
     parameters = ({"exponent": 10.0}, {"exponent": 40.0})
     options = {"parameters": parameters, "reference": exact_blinn}

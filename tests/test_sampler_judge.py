@@ -207,6 +207,22 @@ def test_efficiency_counts_variance_and_lets_time_be(rng: np.random.Generator, l
         assert "second" not in found.text
 
 
+def test_a_density_that_is_forged_in_some_rounds_alone_is_forged(
+    rng: np.random.Generator, local_callee: Any
+) -> None:
+    """Uniform directions are right and vary too much; weights that are forged are wrong and do not vary."""
+    asked = [0]
+
+    def pdf(w: Any) -> Any:
+        asked[0] += 1
+        forged = np.maximum(w[:, 2], 0.0) * (1 + 0.5 * w[:, 0])
+        return np.full(len(w), 0.5 / np.pi) if asked[0] % 2 else forged
+
+    judge = _judge("efficiency", integrand=lambda w: np.maximum(w[:, 2], 0.0) * (1 + 0.5 * w[:, 0]))
+    found = _found(judge, local_callee(lambda u: around(u[:, 0], u[:, 1]), {"pdf": pdf}), rng)
+    assert found.share == 0, found.text
+
+
 @pytest.mark.parametrize("name", ["polar", "concentric"])
 def test_false_alarms_are_as_rare_as_is_said(name: str, seed: int, local_callee: Any) -> None:
     """A test fails in one round with the probability of its level, so that three in a row are its cube."""

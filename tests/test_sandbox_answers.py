@@ -184,6 +184,7 @@ def test_nothing_differs_from_run_to_run(theirs, tmp_path):
 
 def test_words_are_steady():
     folder = "/tmp/radiokit-ab12"
+    assert steady("getpwuid(): uid not found: 61234") == "getpwuid(): uid not found: …"
     text = f"pid=17, uid: 61234 [pid 8] {folder}/home/tmpab12cd_8/x 0x1F 0x7ffff7a01234 rapid 3 pid"
     assert steady(text, folder) == "pid=…, uid: … [pid …] /home/tmp…/x 0x1F 0x… rapid 3 pid"
 

@@ -10,6 +10,7 @@ import socket
 import struct
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -119,6 +120,18 @@ def comets(x, name):
                 if os.fork(): os._exit(0)
             os._exit(0)
     return x
+def crowds(x):
+    end = time.monotonic() + 5
+    for _ in range(int(x)):
+        if os.fork() == 0:
+            os.setsid()
+            while time.monotonic() < end:
+                pass
+            os._exit(0)
+    nice = os.getpriority(os.PRIO_PROCESS, 0)
+    while x and os.getpriority(os.PRIO_PROCESS, 0) == nice and time.monotonic() < end:
+        pass
+    return os.getpriority(os.PRIO_PROCESS, 0)
 def sleeps(x):
     open("left", "w").close(); time.sleep(20)
 """
@@ -343,6 +356,31 @@ def test_files_need_no_namespaces(path, tmp_path):
         if "processes" in protections:
             assert not sandbox.call("signals", 1.0).values[0][0]
     assert "files" in protections or not landlocked()
+
+
+@pytest.mark.parametrize("namespaces", [True, False])
+def test_a_crowd_is_slowed_so_that_others_are_not(path, namespaces):
+    with Sandbox(path, namespaces=namespaces) as sandbox:
+        protections, nice = sandbox.load().protections, []
+        for crowd in (0, 7, 0):
+            with sandbox.apart():
+                nice += sandbox.call("crowds", crowd).values
+    alone, many, after = (int(each) for each in nice)
+    assert many > alone or alone == 19 or "memory" not in protections
+    assert after == alone
+
+
+@pytest.mark.parametrize("namespaces", [True, False])
+def test_what_is_handed_in_is_nobody_else_s(tmp_path, monkeypatch, namespaces):
+    """Two at once run as two users, and no other user of the machine can look into their folders."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    code = b"import os\ndef user(x): return os.getuid()"
+    one, two = (Sandbox(name, content=code, namespaces=namespaces) for name in ("a.py", "b.py"))
+    with one, two:
+        users = [each.call("user", 1.0) for each in (one, two)]
+        modes = [path.stat().st_mode for path in tmp_path.iterdir()]
+    assert "user" not in users[0].protections or users[0].values != users[1].values
+    assert [mode & 0o7 for mode in modes] == [0, 0]
 
 
 def landlocked():

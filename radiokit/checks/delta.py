@@ -9,6 +9,7 @@ import numpy as np
 from radiokit.checks.parts import index_squared
 from radiokit.checks.probes import channels, pairs
 from radiokit.contracts.bsdf import BSDF, FloatArray
+from radiokit.facts.triples import dot
 from radiokit.facts.verdict import Witness
 
 __all__ = ["in_lobe", "lobe_means", "way_back"]
@@ -113,8 +114,8 @@ def lobe_means(f: BSDF, wi: FloatArray, weight: FloatArray, wo: FloatArray) -> l
 
 
 def _distance(a: FloatArray, b: FloatArray) -> FloatArray:
-    distance: FloatArray = np.linalg.norm(np.atleast_2d(a - b), axis=1)
-    return distance
+    way = np.atleast_2d(a - b)
+    return np.asarray(np.sqrt(dot(way, way)))
 
 
 def _plain(values: FloatArray) -> Any:

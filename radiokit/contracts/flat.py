@@ -264,7 +264,8 @@ class _View:
             return np.zeros(len(direction), dtype=bool)
         found = np.zeros(len(direction), dtype=bool)
         for planes, slack in zip(self._planes, self._slack, strict=True):
-            found |= np.all(direction @ planes.T <= slack, axis=-1)
+            sides = planes @ direction.T  # many times as fast to reduce as along the short axis
+            found |= np.all(sides <= slack[:, None], axis=0)
         return found
 
     def towards(self, u: FloatArray) -> FloatArray:

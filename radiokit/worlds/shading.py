@@ -16,7 +16,8 @@ from radiokit.facts.estimate import Estimate
 from radiokit.measure.montecarlo import seed_from
 from radiokit.worlds.budget import Budget, Purse
 from radiokit.worlds.integral import integrate, patience
-from radiokit.worlds.planning import Plan, choose, explained, find_terms, integrates
+from radiokit.worlds.plan import Plan
+from radiokit.worlds.planning import choose, explained, find_terms, integrates
 from radiokit.worlds.sampling import monte_carlo, sampling_is_better
 from radiokit.worlds.scene import behind_all
 from radiokit.worlds.terms import SMOOTH, Term

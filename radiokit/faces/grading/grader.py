@@ -98,9 +98,8 @@ def grade(
     """
     work = load_assignment(assignment)
     taken = {name for each in work.questions for name in each.functions}
-    if questions is not None:
-        wanted = {work.question(name).name for name in questions}
-        work = replace(work, questions=tuple(each for each in work.questions if each.name in wanted))
+    wanted = {work.question(name).name for name in questions} if questions is not None else taken
+    asked = [each for each in work.questions if each.name in wanted]
     checked_language(language)
     done = {question.name: question for question in earlier.questions} if earlier is not None else {}
     grades: list[QuestionGrade] = []
@@ -118,26 +117,29 @@ def grade(
         problems = _problems(loaded, language)
         result = replace(result, problems=problems, protections=loaded.protections, missing=loaded.missing)
         seconds, measured = {}, {}
-        for question in work.questions:
+        for question in asked:
             if progress is not None:
-                progress(len(grades), len(work.questions))
+                progress(len(grades), len(asked))
             began = time.monotonic()
             if question.name in done:
                 grades.append(done[question.name])
             else:
                 others = [name for name in names if name in question.functions or name not in taken]
-                absent = {
-                    name: _absent(sandbox, name, loaded, others, problems, language)
-                    for name in question.functions
-                }
-                found, review, numbers = _judged(sandbox, work, question, absent, student, secret, language)
+                with sandbox.within(question.seconds):  # what hangs costs it once
+                    absent = {
+                        name: _absent(sandbox, name, loaded, others, problems, language)
+                        for name in question.functions
+                    }
+                    found, review, numbers = _judged(
+                        sandbox, work, question, absent, student, secret, language
+                    )
                 measured.update({f"{question.name}.{name}": value for name, value in numbers.items()})
                 grades.append(_graded(question, found, review, language))
             seconds[question.name] = time.monotonic() - began
             result = replace(
                 result,
                 questions=tuple(grades),
-                complete=len(grades) == len(work.questions),
+                complete=len(grades) == len(asked),
                 seconds=seconds,
                 measured=measured,
             )
@@ -155,23 +157,7 @@ def _judged(
     secret: str,
     language: str,
 ) -> tuple[dict[str, Finding], str, dict[str, float]]:
-    """Return the finding of each part, why a person should look, and what was measured.
-
-    The parts share the question's time, so that one that hangs cannot cost it again in the next.
-    """
-    with sandbox.within(question.seconds):
-        return _judged_parts(sandbox, work, question, absent, student, secret, language)
-
-
-def _judged_parts(
-    sandbox: Sandbox,
-    work: Assignment,
-    question: Question,
-    absent: Mapping[str, Finding | None],
-    student: str,
-    secret: str,
-    language: str,
-) -> tuple[dict[str, Finding], str, dict[str, float]]:
+    """Return the finding of each part, why a person should look, and what was measured."""
     found: dict[str, Finding] = {}
     review = ""
     numbers: dict[str, float] = {}

@@ -23,6 +23,8 @@ LARGEST = MIB << 20
 """How many bytes a submission may have."""
 MOST = 5000
 """How many files one entry may have."""
+PACKED = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
+"""How members of a .zip may be packed: of these alone is as much unpacked as is read, and no more."""
 
 
 @dataclass(frozen=True)
@@ -139,6 +141,8 @@ def _members(archive: _Candidate) -> list[_Candidate]:
 
     def candidate(member: zipfile.ZipInfo) -> _Candidate:
         def read() -> bytes:
+            if member.compress_type not in PACKED:
+                raise NoSubmissionError("archive")
             try:
                 with zipfile.ZipFile(content) as opened, opened.open(member) as file:
                     return _bounded(file.read(LARGEST + 1))

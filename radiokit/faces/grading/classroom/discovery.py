@@ -17,8 +17,9 @@ SKIPPED = frozenset({"__MACOSX", "__pycache__", "submission_metadata.yml", "desk
 """What systems leave behind beside what is handed in; hidden files likewise."""
 
 EXPORTS = (
-    # Moodle: Name_123_assignsubmission_file_, a folder or the beginning of a file's name.
-    re.compile(r"(?P<key>.+_\d+)_assignsubmission_(?:file|onlinetext)(?:_(?P<name>.*))?"),
+    # Moodle: Name_123_assignsubmission_file_, a folder or the beginning of a file's name; what follows is
+    # the student's own, and may look the same.
+    re.compile(r"(?P<key>.+?_\d+)_assignsubmission_(?:file|onlinetext)(?:_(?P<name>.*))?"),
     # Canvas: lastfirst_123_456_file.py, or lastfirst_LATE_123_456_file.py
     re.compile(r"(?P<who>[^_]+)(?:_LATE)?_(?P<id>\d{2,})_\d{2,}_(?P<name>.+)"),
 )

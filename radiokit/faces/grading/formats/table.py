@@ -13,11 +13,13 @@ from radiokit.facts.errors import ParameterError
 
 __all__ = ["to_csv"]
 
+_NUMBER = r"[+-]?(?:[\d.]+(?:e[+-]?\d+)?|inf|nan)(?=[\s;,|)\]}]|$)"
 _FORMULA = re.compile(
-    r"""(^|[;,|]["'\s]*(?![+-]?(?:[\d.]+(?:e[+-]?\d+)?|inf|nan)(?:[\s;,|)\]}]|$)))(?=[=+@-]|[＝＋＠－])""",
+    rf"""(^|([;,|])["'\s]*(?!{_NUMBER}(?!(?:(?!\2)[^)\]}}])*[-+*/^&<>=%:!])))(?=[=+@-]|[＝＋＠－])""",
     re.IGNORECASE,
 )
-"""Where a formula may begin, in the letters of wide fonts too; a number within a text is none."""
+"""Where a formula may begin, in the letters of wide fonts too; a number within a text is none, unless there
+is an operator after it before the cell would end."""
 _DIALECTS = {"": ("", ",", "."), "en": ("\ufeff", ",", "."), "ru": ("\ufeff", ";", ",")}
 
 

@@ -64,5 +64,6 @@ def to_rich(grade: Grade, *, reveal: bool = False) -> Table:
                 escape(line.text),
                 end_section=place == len(question.parts),
             )
-    table.caption = escape("\n".join(notes_of(grade)))
+    # A note is wrapped, and no line of a log may begin as a command: see ``plain_text``.
+    table.caption = escape("\n".join(notes_of(grade)).replace("::", ": :"))
     return table

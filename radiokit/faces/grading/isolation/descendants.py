@@ -1,4 +1,4 @@
-"""Descendants: the processes below another, the memory that they use together, and their end.
+"""Descendants: the processes below another, the memory and the time that they take together, and their end.
 
 It is run by the launcher, and imports little, as all that it imports is waited for. Memory is looked at as
 often as ``PERIOD`` says. A control group would bound it at once, but one may be made only where the grader's
@@ -7,14 +7,21 @@ own group is delegated to it and emptied, which no login session and no containe
 
 from __future__ import annotations
 
+import math
 import os
 import signal
 import time
 
-__all__ = ["PERIOD", "bury", "clear", "ended", "tree", "used", "watchable"]
+__all__ = ["PERIOD", "bury", "clear", "ended", "slow", "tree", "used", "watchable"]
 
 PERIOD = 0.05
 """How long nobody looks [s]."""
+FREE = 2
+"""How many tasks may run at once as fast as others'."""
+SESSION, NICE = 3, 16
+"""Their places in ``stat``, behind the name."""
+STEP, MOST = 1.25, 19
+"""How much less a task weighs for each step that it is nicer, and how nice one can be."""
 
 
 def _read(proc: int, path: str) -> str:
@@ -67,6 +74,55 @@ def used(proc: int, pids: list[int], enough: int) -> int:
             shared = _amount(proc, f"{pid}/smaps_rollup", ("Pss:", "SwapPss:"))
             amounts[pid] = amounts[pid] if shared is None else shared
     return sum(amounts.values())
+
+
+def _tasks(proc: int, pid: int) -> list[tuple[int, list[str]]]:
+    """Return the tasks of a process with what ``stat`` tells of each behind its name, its state first."""
+    try:
+        tasks = os.open(f"{pid}/task", os.O_RDONLY, dir_fd=proc)
+    except OSError:
+        return []
+    found = []
+    for task in os.listdir(tasks):
+        try:
+            found.append((int(task), _read(tasks, f"{task}/stat").rpartition(")")[2].split()))
+        except OSError:
+            continue
+    os.close(tasks)
+    return found
+
+
+def slow(proc: int, pids: list[int]) -> None:
+    """Let all that runs at once weigh little more than ``FREE`` tasks, as others' processes run beside it.
+
+    The first of all is let be, for it lasts and mostly waits. Where the kernel weighs sessions (autogroups),
+    those beside the first one's are slowed as well.
+    """
+    tasks = [(pid, task, told) for pid in pids for task, told in _tasks(proc, pid)]
+    busy = sum(told[0] == "R" for _, _, told in tasks)
+    if busy <= FREE:
+        return
+    nice = min(MOST, os.getpriority(os.PRIO_PROCESS, 0) + math.ceil(math.log(busy / FREE, STEP)))
+    for pid, task, told in tasks:
+        if task == pids[0]:
+            continue
+        try:
+            if int(told[NICE]) < nice:
+                os.setpriority(os.PRIO_PROCESS, task, nice)
+            if task == pid and told[SESSION] != tasks[0][2][SESSION]:
+                group = f"{pid}/autogroup"  # /autogroup-7 nice 0
+                if int(_read(proc, group).split()[-1]) < nice:
+                    _write(proc, group, str(nice))
+        except OSError:
+            continue
+
+
+def _write(proc: int, path: str, text: str) -> None:
+    descriptor = os.open(path, os.O_WRONLY, dir_fd=proc)
+    try:
+        os.write(descriptor, text.encode())
+    finally:
+        os.close(descriptor)
 
 
 def watchable(proc: int) -> bool:

@@ -67,6 +67,9 @@ def _start(
     fresh = inside and own_users and release >= (5, 14)  # there, a user namespace counts for itself
     counted = 3 if fresh else spec["threads"][uid]
     rights.limit(spec["limits"], spec["limits"]["processes"] + counted)
+    if not inside and os.geteuid() == 0:  # what was handed in is to be read by its own user alone
+        os.chown(box, -1, uid)
+        os.chmod(box, 0o710)
     for capability in range(64):
         namespaces.control(namespaces.PR_CAPBSET_DROP, capability)
     if not own_users and rights.become(spec["uid"], [*spec["needs"], f"{box}/child.pyc"], home):
@@ -210,7 +213,8 @@ def _main() -> None:
         kind: {name: _contents(path) for name, path in spec[kind].items()} for kind in ("programs", "files")
     }
     spec["given"] = sum(len(data) + 4096 for data in files["files"].values())
-    spec["threads"] = {uid: rights.threads(uid) for uid in {os.getuid(), spec["uid"]}}
+    spec["uid"] = rights.free_user()
+    spec["threads"] = {spec["uid"]: 0, os.getuid(): rights.threads(os.getuid())}
     folder = os.open(os.path.dirname(spec["box"]), os.O_RDONLY | os.O_DIRECTORY)
     proc = os.open("/proc", os.O_RDONLY | os.O_DIRECTORY) if os.path.isdir("/proc/self") else -1
     watched = descendants.watchable(proc)
@@ -235,9 +239,10 @@ def _main() -> None:
     ours = 2 if spec["namespaces"] else 1  # the launcher, and the first process of the namespaces
 
     def excess() -> int:
-        """Return what the child's processes have too much of, as is seen twice, or 0."""
+        """Slow what runs beside itself; return what of it is too much, as is seen twice, or 0."""
         for _ in range(2):
             pids = descendants.tree(proc, me)[ours:]
+            descendants.slow(proc, pids)
             many = len(pids) > limits["processes"] + SPARE
             if not many and descendants.used(proc, pids, limits["memory_bytes"]) <= limits["memory_bytes"]:
                 return 0

@@ -139,17 +139,20 @@ class ChildProcess:
                 now = time.monotonic()
                 self.waited, before = self.waited + min(now - before, TURN), now
                 for key, _ in ready:
-                    if key.fd == self._requests:
-                        try:
-                            left = left[os.write(key.fd, left) :]
-                        except BrokenPipeError:
-                            left = left[len(left) :]
-                        if not left:
-                            selector.unregister(self._requests)
-                        continue
                     results = key.fd == self._results
-                    data = os.read(key.fd, min(whole.wanted, 1 << 20) if results else 1 << 16)
-                    if not results:
+                    try:
+                        if key.fd == self._requests:
+                            left = left[os.write(key.fd, left) :]
+                        else:
+                            data = os.read(key.fd, min(whole.wanted, 1 << 20) if results else 1 << 16)
+                    except BlockingIOError:  # a child of the same user can open its pipes' other ends
+                        continue
+                    except BrokenPipeError:
+                        left = left[len(left) :]
+                    if key.fd == self._requests:
+                        if not left:
+                            selector.unregister(key.fd)
+                    elif not results:
                         self._keep(data)
                         if not data:
                             selector.unregister(key.fd)
@@ -257,7 +260,6 @@ def carried(given: npt.ArrayLike) -> Array:
 
 def _written(folder: Path, files: Files) -> dict[str, str]:
     """Write the programs, and the files that are none yet; return the files' paths by name."""
-    folder.chmod(0o755)
     for name in (*PROGRAMS, *LAUNCHING):  # compiled once, as a class has many submissions
         Path(folder, f"{name}.pyc").write_bytes(_compiled(name))
     paths = {}
@@ -287,7 +289,6 @@ def _command(folder: str, limits: Limits, files: dict[str, str], results: int, n
         "python": python,
         "sites": [site, *_packages(site, visible)],
         "results": results,
-        "uid": 61184 + os.getpid() % 4000,
         "needs": [python, np.__file__, os.__file__],
         "programs": {f"{name}.pyc": f"{folder}/{name}.pyc" for name in PROGRAMS},
         "files": files,

@@ -68,7 +68,7 @@ def steady(text: str, folder: str = "") -> str:
     if folder:
         text = text.replace(folder, "")
     text = re.sub(r"\b0x[0-9a-fA-F]{6,}\b", "0x…", text)
-    text = re.sub(r"\b([pug]id\W{1,3})\d+", r"\1…", text, flags=re.IGNORECASE)
+    text = re.sub(r"\b([pug]id(?: not found)?\W{1,3})\d+", r"\1…", text, flags=re.IGNORECASE)
     return re.sub(r"/tmp[a-z0-9_]{8}\b", "/tmp…", text)
 
 

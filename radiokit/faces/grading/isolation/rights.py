@@ -12,7 +12,10 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["become", "limit", "processes_are_counted", "threads"]
+__all__ = ["become", "free_user", "limit", "processes_are_counted", "threads"]
+
+USERS = range(61184, 65184)
+"""Ids that are kept for users who come and go, as systemd does."""
 
 
 def threads(uid: int) -> int:
@@ -25,6 +28,12 @@ def threads(uid: int) -> int:
         except OSError:
             continue
     return count
+
+
+def free_user() -> int:
+    """Return a user who runs nothing, so that two submissions neither count for nor reach each other."""
+    first = os.getpid() % len(USERS)
+    return next((uid for uid in (*USERS[first:], *USERS[:first]) if not threads(uid)), USERS[first])
 
 
 def limit(limits: dict[str, int], processes: int) -> None:

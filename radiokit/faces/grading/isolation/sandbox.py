@@ -27,7 +27,9 @@ __all__ = ["Sandbox"]
 LARGEST = 1 << 28
 """Files of more bytes are no submission."""
 BRANCHING = 5.0
-"""How long a child may take to make a copy of itself [s]."""
+"""How long a child may take to make a copy of itself, or to end one, if its calls have so much left [s]."""
+CLEARING = 1.0
+"""How long it may take to end one if they have less [s]."""
 ENDING = 1.0
 """What is left to a child to say that it came to the end of its time [s]."""
 
@@ -106,7 +108,7 @@ class Sandbox:
         self._budgets: list[_Budget] = []
         self._apart = self._branched = False
         self._end = self._output = ""
-        self._waited = 0.0
+        self._waited = self._stood = 0.0
 
     def __enter__(self) -> Sandbox:
         """Hold interrupts from here on; they are let in while a child is waited for."""
@@ -213,7 +215,10 @@ class Sandbox:
 
     @contextmanager
     def within(self, seconds: float) -> Iterator[None]:
-        """Let all calls inside share this wall time [s]; a first loading, and what is between, are free."""
+        """Let all calls inside share this wall time [s], with the copies that `apart` makes for them.
+
+        A first loading, and what is between, are free.
+        """
         if not 0 < seconds < float("inf"):
             raise ParameterError("seconds", seconds, "a finite number above 0")
         self._budgets.append(_Budget(seconds, seconds))
@@ -248,8 +253,7 @@ class Sandbox:
                 child.close()
 
     def _called(self, request: dict[str, Any], arrays: Sequence[Array], timeout: float | None) -> Result:
-        seconds = self.limits.seconds if timeout is None else timeout
-        late = f"took longer than {seconds:g} s"
+        limit = self.limits.seconds if timeout is None else timeout
         for last in (False, True):
             if self._child is None or self._loaded is None:
                 failed = self._loaded is not None and bool(self._loaded.error)  # then it would fail again
@@ -257,29 +261,47 @@ class Sandbox:
                 if loaded.error:
                     error = f"could not be loaded: it {loaded.error}"
                     return Result(error=error, protections=self._protections)
-            if self._branched or not self._apart:
+            seconds, late = self._left(limit)
+            if self._branched or not self._apart or seconds <= 0:
                 break
             branch = self._branch(True)
-            if branch.ok:
+            seconds, late = self._left(limit)
+            if branch.ok or seconds <= 0:
                 break
             if last:  # the first time, it may be what earlier calls have left
                 return branch
+        if seconds <= 0:
+            return Result(error=late, ended=True, protections=self._protections)
+        with self._charged():
+            return self._request(request, arrays, seconds, late)
+
+    def _left(self, seconds: float) -> tuple[float, str]:
+        """Return what is left to a call that may take this time [s], and what is said when it is over."""
+        late = f"took longer than {seconds:g} s"
         for budget in self._budgets:
             if budget.left < seconds:
                 seconds, late = budget.left, f"took longer than {budget.seconds:g} s in all"
-        if seconds <= 0:
-            return Result(error=late, ended=True, protections=self._protections)
-        result = self._request(request, arrays, seconds, late)
-        for budget in self._budgets:
-            budget.left -= result.seconds
-        return result
+        return seconds, late
+
+    @contextmanager
+    def _charged(self) -> Iterator[None]:
+        """Take the time of the block from what calls share, but for that in which the machine stood still."""
+        began, self._stood = time.monotonic(), 0.0
+        try:
+            yield
+        finally:
+            for budget in self._budgets:
+                budget.left -= time.monotonic() - began - self._stood
 
     def _branch(self, begins: bool) -> Result:
         """Begin or end a copy of the process that the submission was loaded in."""
         if begins:
             self._end = secrets.token_hex(8)
-        token = "" if begins else self._end
-        result = self._request({"branch": begins, "end": self._end}, (), BRANCHING, "did not answer", token)
+        token, least = ("", 0.0) if begins else (self._end, CLEARING)
+        seconds = max(self._left(BRANCHING)[0], least)
+        with self._charged():
+            asked = {"branch": begins, "end": self._end}
+            result = self._request(asked, (), seconds, "did not answer", token)
         if result.error:  # the next call loads it anew
             self.close()
         self._branched = begins and result.ok
@@ -295,10 +317,12 @@ class Sandbox:
                 child = self._child = self._child or self._started()
             token = token or secrets.token_hex(8)
             asked = pack({"id": token, "file": self._name, **request}, arrays)
+            began = time.monotonic()
             try:
                 header, values = child.exchange(asked, seconds)
             finally:
                 self._waited = child.waited
+                self._stood = max(0.0, time.monotonic() - began - child.waited)
             found = judged(header, values, token, outputs=request.get("outputs", 1), folder=child.folder)
             self._output = child.printed()
         except (StoppedError, MalformedError) as error:

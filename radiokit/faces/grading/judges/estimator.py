@@ -15,7 +15,6 @@ from radiokit.faces.grading.judges.exact import Reference, as_function, no_input
 from radiokit.faces.grading.judges.given import check_functions, check_shares, number
 from radiokit.faces.grading.judges.runs import FLOOR, Runs, UnusableError, gather
 from radiokit.faces.grading.judges.runtests import (
-    ROUNDS,
     bias,
     claims,
     each_level,
@@ -24,6 +23,7 @@ from radiokit.faces.grading.judges.runtests import (
     honest,
     rate,
     rate_slip,
+    settled,
     swapped,
 )
 from radiokit.faces.grading.judges.samplewords import line, slip, tell
@@ -50,7 +50,7 @@ class Estimator:
     - ``"efficiency"``: the value is right, and the variance of one sample is at most ``budget``.
 
     Estimators without variance are right, unless ``exact`` is False. A right estimator whose runs are nearly
-    normal is rejected at most once in 1.6e7 gradings; see ``LEVEL`` and ``ROUNDS``.
+    normal is rejected at most once in 1.6e7 gradings; see ``LEVEL``, ``ROUNDS`` and ``MOST``.
 
     What cannot be told from answers: whether the exact value was computed and given noise and an error that
     suit each other, and whether more than N samples were drawn, as time is bounded only by ``slowest``. Where
@@ -146,8 +146,8 @@ class Estimator:
         shown: bool,
     ) -> Finding:
         """Judge an estimator: right, or what is wrong with it and why."""
-        failing: set[str] = set()
-        for turn in range(ROUNDS):
+        rounds: list[set[str]] = []
+        while not settled(rounds):
             try:
                 runs = gather(
                     callee,
@@ -162,19 +162,20 @@ class Estimator:
                 )
             except UnusableError as error:
                 return error.finding
-            unsampled = runs.exact and not self.exact
-            frozen = unsampled or (runs.frozen and not runs.exact)
-            if turn == 0:
+            if not rounds:
                 measured = {"seconds_per_sample": runs.seconds}
             with np.errstate(all="ignore"):  # values may be of any size
                 tests = dict(self._tests(runs))
             level = each_level(len(tests))
-            failed = {name for name, p in tests.items() if not p >= level}
-            failing = failed if turn == 0 else failing & failed
-            if not failing and not frozen:
+            rounds.append({name for name, p in tests.items() if not p >= level})
+            if (runs.exact and not self.exact) or (runs.frozen and not runs.exact):
+                rounds[-1].add("frozen")
+            if not rounds[-1]:
                 return self._right(runs, language, measured)
         with np.errstate(all="ignore"):
-            return self._wrong(runs, failing, language=language, hints=hints, shown=shown, measured=measured)
+            return self._wrong(
+                runs, settled(rounds), language=language, hints=hints, shown=shown, measured=measured
+            )
 
     def _tests(self, runs: Runs) -> Iterator[tuple[str, float]]:
         """Yield the tests of this aspect, and their p-values."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -20,6 +21,7 @@ __all__ = [
     "honest",
     "rate",
     "rate_slip",
+    "settled",
 ]
 
 LEVEL = 1e-6 / 16
@@ -30,6 +32,24 @@ ROUNDS = 3
 
 So each needs a level of only ``each_level``, near 0.002, where Student's and χ² distributions hold for what
 is not normal; at 1e-7 they would not."""
+
+MOST = 2 * ROUNDS
+"""How many rounds there are at most.
+
+A function is right by one round in which no test fails. What fails one test here and another there fails none
+in each, but may tell the rounds apart and be right in none; a right function does so in all of these rounds
+less often than `LEVEL`."""
+
+
+def settled(rounds: Sequence[set[str]]) -> set[str]:
+    """Return what tells that a function is wrong, from the tests that failed in each round; or nothing yet.
+
+    >>> settled([{"bias"}, {"bias", "rate"}]), settled([{"bias"}, {"bias", "rate"}, {"bias"}])
+    (set(), {'bias'})
+    """
+    if len(rounds) < ROUNDS:
+        return set()
+    return set.intersection(*rounds) or (rounds[-1] if len(rounds) == MOST else set())
 
 
 def each_level(tests: int) -> float:

@@ -25,7 +25,7 @@ from radiokit.faces.grading.judges.draws import Draws, Fit, cells_of_density, sa
 from radiokit.faces.grading.judges.exact import no_inputs
 from radiokit.faces.grading.judges.given import check_functions, check_shares, drawn, numbers, own, shown
 from radiokit.faces.grading.judges.runs import UnusableError
-from radiokit.faces.grading.judges.runtests import ROUNDS, each_level
+from radiokit.faces.grading.judges.runtests import each_level, settled
 from radiokit.faces.grading.judges.samplewords import line, slip, tell
 from radiokit.faces.grading.judges.suspects import behind_density
 from radiokit.facts.errors import AssignmentError, ParameterError
@@ -161,15 +161,16 @@ class Sampler:
         language = draws.language
         cells = cells_of_density(partial(self._right, given=draws.inputs))
         level = each_level(len(Fit.TESTS) * self.cases)
-        name, failing = "", set(Fit.TESTS)
-        for turn in range(ROUNDS):
+        name = ""
+        rounds: list[set[str]] = []
+        while not settled(rounds):
             u = rng.random((self.samples, 2))
             fit = sampled(draws, cells, u, hints)
-            name = name if turn else u_slip(draws, u, fit.directions, rng)
+            name = name if rounds else u_slip(draws, u, fit.directions, rng)
             if name in ("rows-mixed", "u-unused"):
                 return self._found(slip(language, name, hints), name=name)
-            failing -= {test for test, p in fit.p_values().items() if p >= level}
-            if not failing:
+            rounds.append({test for test, p in fit.p_values().items() if not p >= level})
+            if not rounds[-1]:
                 if name:
                     return self._found(slip(language, name, hints), name=name)
                 return Finding(share=1.0, text=tell(language, "sampled", samples=self.samples))
@@ -248,8 +249,8 @@ class Sampler:
         level = each_level(4 * self.cases)
         width = find_lobe(integrand, ABOVE, around=(False,)).width
         weighed = [integral(partial(_weighed, integrand, k), width) for k in range(2)]
-        failing = {"weights", "variance", "moments"}
-        for _ in range(ROUNDS):
+        rounds: list[set[str]] = []
+        while not settled(rounds):
             directions = draws.sample(rng.random((self.samples, 2)))
             claimed = draws.density(directions)
             value = np.where(directions[:, 2] > 0, integrand(directions), 0.0)
@@ -260,21 +261,21 @@ class Sampler:
             weights = np.divide(value, claimed, out=np.zeros_like(value), where=claimed > 0)
             mean, variance = float(weights.mean()), float(weights.var())
             error = math.sqrt(float(np.mean(((weights - mean) ** 2 - variance) ** 2)) / self.samples)
-            passed = set()
+            rounds.append({"weights", "variance", "moments"})
             if bernstein_test(weights, exact, 1e-6 * exact) >= level:
-                passed.add("weights")
+                rounds[-1].discard("weights")
             # a density that is made for the integrand alone has no variance, whatever is sampled
             tails = [
                 bernstein_test(weights * each, right, 1e-4 * exact)
                 for each, right in zip(moments(directions), weighed, strict=True)
             ]
             if min(tails) >= level:
-                passed.add("moments")
+                rounds[-1].discard("moments")
             if variance - 3 * error <= uniform / self.factor:
-                passed.add("variance")
-            failing -= passed
-            if not failing:
+                rounds[-1].discard("variance")
+            if not rounds[-1]:
                 break
+        failing = settled(rounds)
         measured = {"seconds_per_sample": draws.quickest}
         if variance > 0 and draws.quickest > 0:
             measured["efficiency"] = 1 / (variance * draws.quickest)
