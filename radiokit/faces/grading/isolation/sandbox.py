@@ -8,7 +8,7 @@ import sys
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Literal
@@ -253,7 +253,7 @@ class Sandbox:
                 child.close()
 
     def _called(self, request: dict[str, Any], arrays: Sequence[Array], timeout: float | None) -> Result:
-        limit = self.limits.seconds if timeout is None else timeout
+        limit, branched = self.limits.seconds if timeout is None else timeout, 0.0
         for last in (False, True):
             if self._child is None or self._loaded is None:
                 failed = self._loaded is not None and bool(self._loaded.error)  # then it would fail again
@@ -265,6 +265,7 @@ class Sandbox:
             if self._branched or not self._apart or seconds <= 0:
                 break
             branch = self._branch(True)
+            branched += branch.seconds
             seconds, late = self._left(limit)
             if branch.ok or seconds <= 0:
                 break
@@ -272,8 +273,8 @@ class Sandbox:
                 return branch
         if seconds <= 0:
             return Result(error=late, ended=True, protections=self._protections)
-        with self._charged():
-            return self._request(request, arrays, seconds, late)
+        result = self._charged(request, arrays, seconds, late)
+        return replace(result, seconds=branched + result.seconds)
 
     def _left(self, seconds: float) -> tuple[float, str]:
         """Return what is left to a call that may take this time [s], and what is said when it is over."""
@@ -283,15 +284,14 @@ class Sandbox:
                 seconds, late = budget.left, f"took longer than {budget.seconds:g} s in all"
         return seconds, late
 
-    @contextmanager
-    def _charged(self) -> Iterator[None]:
-        """Take the time of the block from what calls share, but for that in which the machine stood still."""
-        began, self._stood = time.monotonic(), 0.0
-        try:
-            yield
-        finally:
-            for budget in self._budgets:
-                budget.left -= time.monotonic() - began - self._stood
+    def _charged(self, request: dict[str, Any], arrays: Sequence[Array], *more: Any) -> Result:
+        """Ask the child, and take from what calls share the time of that, and of ending it where it must."""
+        began = time.monotonic()
+        result = self._request(request, arrays, *more)
+        spent = time.monotonic() - began - self._stood if result.ended else result.seconds
+        for budget in self._budgets:
+            budget.left -= spent
+        return result
 
     def _branch(self, begins: bool) -> Result:
         """Begin or end a copy of the process that the submission was loaded in."""
@@ -299,9 +299,8 @@ class Sandbox:
             self._end = secrets.token_hex(8)
         token, least = ("", 0.0) if begins else (self._end, CLEARING)
         seconds = max(self._left(BRANCHING)[0], least)
-        with self._charged():
-            asked = {"branch": begins, "end": self._end}
-            result = self._request(asked, (), seconds, "did not answer", token)
+        asked = {"branch": begins, "end": self._end}
+        result = self._charged(asked, (), seconds, "did not answer", token)
         if result.error:  # the next call loads it anew
             self.close()
         self._branched = begins and result.ok
