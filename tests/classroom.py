@@ -7,13 +7,15 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 ASSIGNMENT = """
 import os
 import signal
+from contextlib import suppress
+from pathlib import Path
 
 import numpy as np
 
@@ -27,10 +29,27 @@ def both(text):
     return {"en": text, "ru": text}
 
 
+class Patient:
+    # asks who is too slow again and again, while the folder is there that a test names
+
+    def __init__(self, values):
+        self.values = values
+
+    def judge(self, callee, rng, **options):
+        found = self.values.judge(callee, rng, **options)
+        place = Path(os.environ.get("HOLD", "/nowhere"))
+        while "longer" in found.text and place.is_dir():
+            with suppress(FileNotFoundError):
+                (place / str(os.getpid())).touch()
+            callee.call(np.ones(1))
+        return found
+
+
 def question(signature, points, inputs, reference):
-    judge = Values(inputs=inputs, reference=reference)
+    judge = Patient(Values(inputs=inputs, reference=reference))
     part = Part(name="ordinary", judge=judge)
-    return Question(signature=signature, points=points, title=both("Q"), text=both("Q"), parts=(part,))
+    said = {"title": both("Q"), "text": both("Q")}
+    return Question(signature=signature, points=points, parts=(part,), seconds=600.0, **said)
 
 
 def lamps(rng):
@@ -49,7 +68,7 @@ ASSIGNMENT = Assignment(
     name="tiny",
     title=both("Tiny"),
     intro=both("Two questions."),
-    limits=Limits(seconds=1.0),
+    limits=Limits(seconds=2.0),
     questions=(
         question("irradiance(intensity, distance)", 2, lamps, irradiance),
         question("exitance(radiance)", 1, lambda rng: {"radiance": rng.random(12)}, exitance),
@@ -115,7 +134,17 @@ def start(*arguments: str | Path, **options: object) -> subprocess.Popen[bytes]:
     return subprocess.Popen(command, start_new_session=True, **{**pipes, **options})  # type: ignore[call-overload]
 
 
-def wait_until(true: Callable[[], bool], seconds: float = 60.0) -> None:
+@contextmanager
+def holding(folder: Path) -> Iterator[Path]:
+    """Keep Wsewolod's task from ending inside; a file in the folder then tells which process has it."""
+    folder.mkdir()
+    try:
+        yield folder
+    finally:
+        folder.rename(folder.with_name("released"))
+
+
+def wait_until(true: Callable[[], bool], seconds: float = 120.0) -> None:
     """Wait until something is true."""
     end = time.monotonic() + seconds
     while not true():

@@ -183,7 +183,7 @@ def test_a_slow_function_is_searched_more_coarsely_and_the_report_says_so():
 
     start = time.perf_counter()
     report = check(slow, seconds=1.0)
-    assert time.perf_counter() - start < 30
+    assert time.perf_counter() - start < 120
     assert report.ok
     assert any("searches are coarser" in note for note in report.notes)
     assert report["energy"].details["scan_step_deg"] > 0.15

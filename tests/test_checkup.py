@@ -9,6 +9,7 @@ import pytest
 
 import radiokit as rk
 from radiokit.faces.cli import main
+from radiokit.faces.grading import checkup
 from radiokit.faces.grading.assignment import assignment_from_source
 from radiokit.faces.grading.unfound import unfound
 from radiokit.facts.errors import ParameterError
@@ -17,7 +18,8 @@ HERE = Path(__file__).parent
 HOMEWORK, SOLUTION = HERE / "homework.py", HERE / "homework_solution.py"
 
 
-def test_an_assignment_that_is_right(capsys):
+def test_an_assignment_that_is_right(capsys, monkeypatch):
+    monkeypatch.setattr(checkup, "SLOW", 100.0)  # whatever machine this is
     with pytest.raises(SystemExit) as ended:
         main(["assignment", str(HOMEWORK), "--check", "--solution", str(SOLUTION), "--students", "2"])
     told = capsys.readouterr()
@@ -26,7 +28,8 @@ def test_an_assignment_that_is_right(capsys):
     assert told.out.endswith("✓ blanks earn nothing; the solution earns full marks\n")
 
 
-def test_a_solution_that_is_wrong_or_an_assignment_that_is(tmp_path, capsys):
+def test_a_solution_that_is_wrong_or_an_assignment_that_is(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(checkup, "SLOW", 0.0)
     wrong = tmp_path / "wrong.py"
     wrong.write_text(
         SOLUTION.read_text().replace("def cone(half_angle):", "def cone(half_angle):\n    return 2.0")
@@ -39,6 +42,11 @@ def test_a_solution_that_is_wrong_or_an_assignment_that_is(tmp_path, capsys):
     assert ordinary.startswith("question cone, part ordinary: the solution falls short for 2 of 2 students: ")
     assert hard.startswith("question cone, part hard: ")
     assert set(found["seconds"]) == {"irradiance", "cone"}
+    assert [note.split(" takes ")[0] for note in found["notes"]] == [
+        "question irradiance: the solution",
+        "question cone: the solution",
+    ]
+    assert all(note.endswith(", and each part is stopped after 2 s") for note in found["notes"])
 
 
 def test_blanks_that_earn_points_and_faults_that_only_some_inputs_show(tmp_path):

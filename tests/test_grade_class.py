@@ -14,7 +14,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from classroom import CLASS, KEYS, NAMES, RIGHT, act, hand_in, left_of, made, start, wait_until
+from classroom import CLASS, KEYS, NAMES, RIGHT, act, hand_in, holding, left_of, made, start, wait_until
 
 import radiokit as rk
 from radiokit.faces.cli import main
@@ -387,21 +387,23 @@ def test_two_workers_write_the_same_bytes_after_any_end_and_no_name_is_said(
     place: Path, tmp_path: Path
 ) -> None:
     (tmp_path / "tmp").mkdir()
-    environment = {**os.environ, "TMPDIR": str(tmp_path / "tmp")}
+    environment = {**os.environ, "TMPDIR": str(tmp_path / "tmp"), "HOLD": str(tmp_path / "hold")}
     out = tmp_path / "two"
     arguments = _arguments(place, out, "--workers", "2")
 
-    killed = start(*arguments, env=environment)
-    wait_until(lambda: len(list(out.glob("results/*.json"))) >= 3 and bool(list(out.glob("partial/*.json"))))
-    os.kill(killed.pid, signal.SIGKILL)
-    said = b"".join(killed.communicate())
+    with holding(tmp_path / "hold") as hold:  # until then it cannot end
+        killed = start(*arguments, env=environment)
+        wait_until(lambda: len(list(out.glob("results/*.json"))) >= 4 and any(hold.iterdir()))
+        os.kill(killed.pid, signal.SIGKILL)
+        said = b"".join(killed.communicate())
     wait_until(lambda: not left_of(killed.pid, tmp_path / "tmp"))  # workers and sandboxes end with it
     assert not list((tmp_path / "tmp").iterdir())
+    assert list(out.glob("partial/*.json"))
     kept = {path: path.read_bytes() for path in out.glob("results/*.json")}
-    assert 3 <= len(kept) < 8
+    assert 4 <= len(kept) < 8
 
     again = start(*arguments, "--json", env=environment)
-    printed, errors = again.communicate(timeout=120)
+    printed, errors = again.communicate(timeout=300)
     assert (again.returncode, errors) == (0, b"")
     assert {path: path.read_bytes() for path in kept} == kept
     assert made(out) == made(place / "one")
@@ -417,15 +419,16 @@ def test_two_workers_write_the_same_bytes_after_any_end_and_no_name_is_said(
 def test_an_interrupt_ends_a_run_at_once_and_cleanly(place: Path, tmp_path: Path) -> None:
     (tmp_path / "tmp").mkdir()
     out = tmp_path / "out"
-    run = start(
-        *_arguments(place, out, "--workers", "2"), env={**os.environ, "TMPDIR": str(tmp_path / "tmp")}
-    )
-    wait_until(lambda: len(list(out.glob("results/*.json"))) >= 3)
-    os.killpg(run.pid, signal.SIGINT)  # as a terminal does
-    printed, errors = run.communicate(timeout=30)
+    environment = {**os.environ, "TMPDIR": str(tmp_path / "tmp"), "HOLD": str(tmp_path / "hold")}
+    with holding(tmp_path / "hold") as hold:  # all but one have a result, and that one is being asked
+        run = start(*_arguments(place, out, "--workers", "2"), env=environment)
+        wait_until(lambda: len(list(out.glob("results/*.json"))) == 7 and any(hold.iterdir()))
+        os.killpg(run.pid, signal.SIGINT)  # as a terminal does
+        printed, errors = run.communicate(timeout=120)
     assert (run.returncode, printed, errors) == (130, b"", b"")
     wait_until(lambda: not left_of(run.pid, tmp_path / "tmp"))
     assert not list((tmp_path / "tmp").iterdir())
+    assert len(list(out.glob("results/*.json"))) == 7
     assert {name for name in made(out) if name.startswith("results")} < set(made(place / "one"))
 
 

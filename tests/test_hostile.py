@@ -92,7 +92,7 @@ def assignment(seconds):
 
 @pytest.fixture
 def mark(seed):
-    return f"rk-{seed % 10**10}"
+    return f"rk-{seed % 10**4}-{os.getpid()}"  # 15 characters at most; another run has others
 
 
 @pytest.fixture
@@ -147,7 +147,7 @@ def signals():
 
 
 def check_nothing_is_left(server, mark, boxes):
-    deadline = time.monotonic() + 3
+    deadline = time.monotonic() + 60
     while running(mark) and time.monotonic() < deadline:
         time.sleep(0.01)
     assert not running(mark)
@@ -180,7 +180,7 @@ def test_an_attack_costs_its_question_alone(attack, tmp_path, server, mark, sign
 @pytest.mark.parametrize("attack", [name for name in ATTACKS if name.startswith("load: ")])
 def test_an_attack_while_it_is_loaded_costs_the_submission_at_most(attack, tmp_path, server, mark, boxes):
     code, expected = ATTACKS[attack]
-    work = dataclasses.replace(assignment(5), limits=G.Limits(load_seconds=0.7, printed_bytes=1 << 18))
+    work = dataclasses.replace(assignment(5), limits=G.Limits(load_seconds=2, printed_bytes=1 << 18))
     found = G.grade(work, handed_in(tmp_path, server, mark, code))
     assert found.complete
     assert found["attack"].score == 0

@@ -160,8 +160,14 @@ def test_an_interrupt_before_any_line_of_the_sandbox_leaves_nothing(
     lines = _lines(_work, 0)
     assert lines > 100
     assert not list(tmp_path.iterdir())
-    for line in (1 + rng.permutation(lines)[:12]).tolist():
-        with pytest.raises(KeyboardInterrupt):
+    interrupted = 0
+    for line in (1 + rng.permutation(lines)).tolist():
+        try:
             _lines(_work, line)
+        except KeyboardInterrupt:  # a line that comes only when there is long to wait need not come again
+            interrupted += 1
         wait_until(lambda: not left_of(-1, tmp_path))
         assert not list(tmp_path.iterdir()), f"before line {line} of {lines}"
+        if interrupted == 12:
+            return
+    pytest.fail(f"only {interrupted} interrupts of {lines}")

@@ -20,7 +20,7 @@ def test_the_notebook_runs(path, missing_opengl):
     for cell in lobes if missing_opengl else ():
         cell.metadata["tags"] = ["raises-exception"]
     NotebookClient(
-        notebook, timeout=120, kernel_name="python3", resources={"metadata": {"path": path.parent}}
+        notebook, timeout=600, kernel_name="python3", resources={"metadata": {"path": path.parent}}
     ).execute()
     outputs = [output for cell in notebook.cells if cell.cell_type == "code" for output in cell.outputs]
     assert outputs

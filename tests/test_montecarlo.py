@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import time
 import tracemalloc
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from multiprocessing import get_context
@@ -191,7 +193,7 @@ def test_what_was_not_reached_is_said(seed):
     assert not late.converged
     assert 1000 <= late.evaluations < 10**12
     assert late.note.startswith(f"stopped after {late.evaluations} of {10**12} samples: 0.02 s were up")
-    assert late.seconds < 5
+    assert late.seconds < 60
 
 
 def test_memory_does_not_grow_with_the_samples(seed):
@@ -282,16 +284,22 @@ def test_planted_tolerances_out_of_reach_are_said(method, rough, seed):
     assert "rtol = 1e-12 was not reached" in both.note
 
 
+@pytest.fixture
+def clock(monkeypatch):
+    """A clock that goes on by a millisecond whenever it is looked at: no machine is slow or fast by it."""
+    looks = itertools.count()
+    monkeypatch.setattr(time, "perf_counter", lambda: 1e-3 * next(looks))
+
+
 @pytest.mark.parametrize("method", ["mc", "qmc"])
 @pytest.mark.parametrize("model", ["ggx", "own"])
-def test_a_time_limit_holds_and_is_no_failure_where_nothing_else_was_asked(method, model, rough, seed):
+def test_a_time_limit_holds_and_is_no_failure_where_nothing_else_was_asked(method, model, rough, seed, clock):
     f = rough[0] if model == "ggx" else lambda wi, wo: wi[:, 2] / np.pi
-    rk.albedo(f, rough[1], method=method, samples=1024)  # compiles, outside of the time
     found = rk.albedo(f, rough[1], method=method, seconds=0.05, rng=seed % 1000)
     assert found.converged
     assert found.evaluations > 1 << 12
-    assert 0.02 < found.seconds < 3
-    assert found.note.endswith("samples: 0.05 s were up") or found.evaluations == 1 << 28
+    assert 0.02 < found.seconds < 0.06
+    assert found.note.endswith("samples: 0.05 s were up")
     short = rk.albedo(f, rough[1], method=method, seconds=0.01, samples=1 << 28, rng=seed % 1000)
     assert not short.converged
     assert f" of {1 << 28} samples: 0.01 s were up" in short.note
@@ -302,7 +310,7 @@ def test_a_time_limit_holds_and_is_no_failure_where_nothing_else_was_asked(metho
 
 @pytest.mark.parametrize("method", ["mc", "qmc"])
 @pytest.mark.parametrize("model", ["ggx", "spectral", "own"])
-def test_directions_take_turns_while_there_is_time(method, model, rough, seed):
+def test_directions_take_turns_while_there_is_time(method, model, rough, seed, clock):
     f, wo = rough
     if model == "spectral":
         f = rk.bsdf("lambert", reflectance=[0.2, 0.5, 0.8])
@@ -317,7 +325,7 @@ def test_directions_take_turns_while_there_is_time(method, model, rough, seed):
     for place in (0, 2):  # as much as if it were alone
         np.testing.assert_allclose(found.value[place], each.value, rtol=1e-12)
         np.testing.assert_allclose(found.error[place], each.error, rtol=1e-6, atol=1e-12)
-    assert found.seconds < 3
+    assert found.seconds < 0.06
 
 
 @pytest.mark.parametrize(

@@ -141,8 +141,8 @@ def test_in_a_students_kernel_the_visible_parts_stand_for_all(monkeypatch, capsy
 
 def test_a_grader_that_takes_too_long_is_ended(monkeypatch):
     monkeypatch.setattr(kernel, "_executed", lambda: ["def cone(half_angle): return 1.0"])
-    with pytest.raises(rk.errors.RadiokitError, match=r"took longer than 0\.01 s"):
-        rk.grading.kernel_points("cone", assignment=str(HOMEWORK), seconds=0.01)
+    with pytest.raises(rk.errors.RadiokitError, match=r"took longer than 1e-09 s"):
+        rk.grading.kernel_points("cone", assignment=str(HOMEWORK), seconds=1e-9)
 
 
 def test_a_course_that_has_a_configuration_keeps_it_if_it_makes_points_safe(tmp_path):

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import ast
+import itertools
 import json
+import signal
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from radiokit.faces.grading.isolation import loading
 from radiokit.faces.grading.isolation.limits import Limits
 from radiokit.faces.grading.isolation.sandbox import Sandbox
 from radiokit.faces.grading.isolation.sources import starts, without_magics
@@ -51,7 +54,7 @@ CELLS = [
     "files = !ls\nprint(files)\nfirst?\n??np.sin",
     "get_ipython().run_line_magic('matplotlib', 'inline')\ndisplay(first)\nget_ipython().config.a = 3",
     "assert second(0) == 1, 'check'\ndef third(x):\n    display(x)\n    return first(x) @ 1",
-    "import os\nwhile True: pass",
+    "import time\nwhile True: time.sleep(9)",
     "def last(x): return x",
 ]
 
@@ -106,7 +109,7 @@ def test_a_script_goes_on_after_what_raises(opened):
 
 def test_a_notebook_goes_on_after_what_raises(opened):
     sandbox = opened(json.dumps(notebook(CELLS)), "homework.ipynb")
-    loaded = sandbox.load(timeout=2.0)
+    loaded = sandbox.load(timeout=3.0)
     assert loaded.facts["names"] == ["first", "second", "third", "last"]
     assert problems(loaded) == [
         (
@@ -205,6 +208,24 @@ def test_loading_has_a_time_of_its_own(opened):
     assert sandbox.call("f", 1.0).error == "could not be loaded: it took longer than 0.2 s"
     sandbox = opened("import time; time.sleep(0.6)\ndef f(x): return x")
     assert sandbox.call("f", 1.0, timeout=0.5).ok
+
+
+def test_time_in_which_the_whole_machine_stands_still_is_not_a_statements():
+    alarm, hours = loading._Alarm(), itertools.count(step=3600)
+    alarm._wall, alarm._spent = (lambda: next(hours)), (lambda: 0.0)
+    alarm.start(8000.0)
+    for _ in range(loading.TURNS - 1):
+        alarm(0, None)
+    assert alarm.stop() == 0  # as much as all turns, and no hour more
+    alarm(0, None)  # it came too late to be heard
+    alarm.start(8000.0)
+    alarm._spent = itertools.count(step=3600).__next__
+    for _ in range(2):  # what is computed is no standstill
+        alarm(0, None)
+    with pytest.raises(loading._LateError):
+        alarm(0, None)
+    assert signal.setitimer(signal.ITIMER_REAL, 0)[0] > 0
+    alarm(0, None)  # once is enough
 
 
 def test_the_name_of_a_submission_hides_no_module(opened):

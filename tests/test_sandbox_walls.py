@@ -144,7 +144,7 @@ def path(tmp_path):
     return file
 
 
-def until(condition, seconds=30.0):
+def until(condition, seconds=60.0):
     deadline = time.monotonic() + seconds
     while not condition() and time.monotonic() < deadline:
         time.sleep(0.01)
@@ -251,7 +251,7 @@ def test_orphans_are_buried(path, namespaces):
 
 @pytest.mark.parametrize("namespaces", [True, False])
 def test_what_flees_is_caught(path, namespaces, seed):
-    name = f"rk-{seed % 10**10}"
+    name = f"rk-{seed % 10**4}-{os.getpid()}"
     with Sandbox(path, namespaces=namespaces) as sandbox:
         result = sandbox.call("comets", 1.0, parameters={"name": name})
         assert result.ok

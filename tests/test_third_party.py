@@ -72,7 +72,7 @@ def radiokit_with(folder: Path, *words: str) -> subprocess.CompletedProcess[str]
         env={**os.environ, "PYTHONPATH": os.pathsep.join((str(folder), root))},
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=300,
         check=False,
     )
 

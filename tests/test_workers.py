@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 import os
+import signal
 import sys
 from collections.abc import Iterator
-from concurrent.futures import Executor
+from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import contextmanager
 
 import numpy as np
@@ -64,6 +65,27 @@ def test_processes_are_others_and_one_worker_is_this_one() -> None:
         assert executor.submit(os.getpid).result() != os.getpid()
     with open_executor(1) as executor:
         assert executor.submit(os.getpid).result() == os.getpid()
+
+
+def _signals() -> tuple[bool, bool]:
+    blocked = signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, ())
+    return blocked, signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs signal masks")
+def test_no_interrupt_meets_a_worker_even_while_it_starts(monkeypatch: pytest.MonkeyPatch) -> None:
+    masks: list[bool] = []
+    spawned = ProcessPoolExecutor._spawn_process
+
+    def spawn(executor: ProcessPoolExecutor) -> None:
+        masks.append(_signals()[0])
+        spawned(executor)
+
+    monkeypatch.setattr(ProcessPoolExecutor, "_spawn_process", spawn)
+    with open_executor(2) as executor:
+        assert executor.submit(_signals).result() == (False, True)
+        assert masks == [True]
+        assert not _signals()[0]
 
 
 def test_an_error_in_the_block_leaves_it_and_closes_the_executor() -> None:

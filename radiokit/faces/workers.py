@@ -12,7 +12,7 @@ from radiokit.facts.errors import MissingExtraError, ParameterError, RadiokitErr
 
 __all__ = ["SerialExecutor", "available_workers", "open_executor"]
 
-CONNECT_TIMEOUT = 10.0
+CONNECT_TIMEOUT = 30.0
 """How long a scheduler may take to answer [s]."""
 GRACE = 10.0
 """How long a task may take to clear up when the process that gave it is gone [s]."""
@@ -121,11 +121,24 @@ def open_executor(workers: int | None = None, scheduler: str | None = None) -> I
 @contextmanager
 def _processes(workers: int) -> Iterator[Executor]:
     import multiprocessing
+    import signal
     from concurrent.futures import ProcessPoolExecutor
+
+    class Pool(ProcessPoolExecutor):
+        """Starts workers, as tasks are submitted, which no interrupt meets before they can ignore it."""
+
+        def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+            if not hasattr(signal, "pthread_sigmask"):
+                return super().submit(fn, *args, **kwargs)
+            before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])  # a worker inherits it
+            try:
+                return super().submit(fn, *args, **kwargs)
+            finally:
+                signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
     # Forking a process whose threads hold locks can hang; spawning is the same on every system.
     context = multiprocessing.get_context("spawn")
-    executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_start_worker)
+    executor = Pool(workers, mp_context=context, initializer=_start_worker)
     others = set(multiprocessing.active_children())
     try:
         yield executor
@@ -146,6 +159,8 @@ def _start_worker() -> None:
     import time
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])
     parent = multiprocessing.parent_process()
     assert parent is not None
 

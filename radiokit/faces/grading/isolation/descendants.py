@@ -153,12 +153,17 @@ def ended(child: int) -> int | None:
     return None if not found else code if code >= 0 else 128 - code
 
 
-def clear(proc: int, child: int, deadline: float) -> None:
-    """Kill a child, unless it is 0, and every descendant: orphans become our children, if we reap them."""
-    me = os.getpid()
+def clear(proc: int, child: int, seconds: float) -> None:
+    """Kill a child, unless it is 0, and every descendant: orphans become our children, if we reap them.
+
+    Time in which we have no turn is not counted.
+    """
+    me, now = os.getpid(), time.monotonic()
     if child:
         os.kill(child, signal.SIGKILL)
-    while time.monotonic() < deadline:
+    while seconds > 0:
+        before, now = now, time.monotonic()
+        seconds -= min(now - before, PERIOD)
         try:
             for pid in _children(proc, me):
                 os.kill(pid, signal.SIGKILL)

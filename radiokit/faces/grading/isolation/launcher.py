@@ -249,7 +249,7 @@ def _main() -> None:
         return TOO_MANY if many else TOO_MUCH
 
     code, ended = _watch(child, excess if watched else None)
-    descendants.clear(proc, 0 if ended else child, time.monotonic() + 2)
+    descendants.clear(proc, 0 if ended else child, 2.0)
     _remove(folder, os.path.basename(spec["box"]))
     if code < 0:  # no exit code of a child looks like it
         signal.signal(-code, signal.SIG_DFL)

@@ -26,12 +26,53 @@ __all__ = ["Submission", "prepare", "told"]
 PROBLEMS = 20
 NAMES = 60
 
+TURNS = 8
+"""In how many parts a time limit is waited for; each counts once, however long the machine stands still."""
+
 _MAIN = re.compile(r"__name__ == .__main__.|.__main__. == __name__")
 _FLOW = re.compile(r"(elif|else|except|finally)\b|[\s#)\]}]|$")
 
 
 class _LateError(BaseException):
     """A piece took its time, and more; no ``except Exception`` of a submission catches it."""
+
+
+class _Alarm:
+    """Raises ``_LateError`` once the time is up; what was computed counts in full, and waiting in turns."""
+
+    def __init__(self) -> None:
+        self._wall, self._spent = time.monotonic, time.process_time
+        self._left = self._turn = self._seen = self._cost = 0.0
+        self._set = False
+
+    def start(self, seconds: float) -> None:
+        self._left, self._turn = seconds, seconds / TURNS
+        self._seen, self._cost = self._wall(), self._spent()
+        self._set = True
+        signal.setitimer(signal.ITIMER_REAL, self._turn, self._turn)
+
+    def stop(self) -> float:
+        """Return how much is left [s]."""
+        self._set = False
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        self._count()
+        return self._left
+
+    def _count(self) -> None:
+        seen, cost = self._wall(), self._spent()
+        self._left -= min(seen - self._seen, max(cost - self._cost, self._turn))
+        self._seen, self._cost = seen, cost
+
+    def __call__(self, signum: int, frame: types.FrameType | None) -> None:
+        if not self._set:
+            return
+        self._count()
+        if self._left <= 0:
+            self._set = False
+            raise _LateError
+
+
+_alarm = _Alarm()
 
 
 class _Silent:
@@ -75,12 +116,12 @@ class Submission:
     def run(self, *, seconds: float) -> None:
         """Run all of it, each statement for at most half of the time that is left [s]."""
         sys.modules["submission"] = self.module
-        end = time.monotonic() + seconds
+        left = seconds
         for prefix, name, source in self._parts():
             self._prefixes[name] = prefix
             linecache.cache[name] = (len(source), None, source.splitlines(keepends=True), name)
             for statement in self._statements(prefix, name, source):
-                self._execute(statement, prefix, name, max(0.01, (end - time.monotonic()) / 2))
+                left -= self._execute(statement, prefix, name, max(0.01, left / 2))
 
     def where(self, trace: types.TracebackType | None) -> str:
         """Return the last place in the submission that a traceback goes through, as "cell 3, line 2"."""
@@ -174,23 +215,26 @@ class Submission:
             begin = next((i for i in margin if i > cut), len(lines))
         return body
 
-    def _execute(self, statement: ast.stmt, prefix: str, name: str, seconds: float) -> None:
+    def _execute(self, statement: ast.stmt, prefix: str, name: str, seconds: float) -> float:
+        """Run a statement, and return how long it took [s]."""
         try:
             code = compile(ast.Module([statement], []), name, "exec", self._flags, dont_inherit=True)
         except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
             self._note_syntax(prefix, error)
-            return
+            return 0.0
+        left = seconds
         try:
-            signal.setitimer(signal.ITIMER_REAL, seconds)
+            _alarm.start(seconds)
             exec(code, self.module.__dict__)
-            signal.setitimer(signal.ITIMER_REAL, 0)
+            left = _alarm.stop()
         except BaseException as error:  # a submission may raise anything, SystemExit too
-            signal.setitimer(signal.ITIMER_REAL, 0)
+            left = _alarm.stop()
             where = self.where(error.__traceback__) or f"{prefix}line {statement.lineno}"
             if isinstance(error, _LateError):
                 self._note(where, "", "it was stopped, as it took too long")
             else:
                 self._note(where, type(error).__name__, told(error))
+        return seconds - left
 
     def _note_syntax(self, prefix: str, error: Exception) -> None:
         line = getattr(error, "lineno", None)
@@ -218,8 +262,4 @@ def _parsed(lines: list[str], begin: int, end: int, name: str) -> list[ast.stmt]
 def prepare() -> None:
     """Make this process one in which submissions are run."""
     vars(builtins).update(exit=sys.exit, quit=sys.exit)
-    signal.signal(signal.SIGALRM, _late)
-
-
-def _late(signum: int, frame: types.FrameType | None) -> None:
-    raise _LateError
+    signal.signal(signal.SIGALRM, _alarm)

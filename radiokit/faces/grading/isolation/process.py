@@ -36,6 +36,10 @@ PROGRAMS = ("child", "sources", "imports", "protocol", "loading", "answers", "si
 LAUNCHING = ("launcher", "descendants", "landlock", "namespaces", "rights", "seccomp")
 STARTUP = 30.0
 """How long Python may take to start [s]."""
+ENDING = 5.0
+"""How long a launcher may take to clear up [s]."""
+TURN = 0.1
+"""What one turn of waiting counts at most [s]: where all processes stand still together, no time passes."""
 KEPT = 2000
 """How many characters of what is printed are kept."""
 Files: TypeAlias = Mapping[str, str | bytes]
@@ -58,6 +62,9 @@ class LateError(StoppedError):
 class ChildProcess:
     """A launcher and the child that it starts behind its walls; ``folder`` is its place in the file system.
 
+    ``waited`` is how long the last exchange has taken [s], without the time in which this process was stopped
+    or had no turn.
+
     Parameters
     ----------
     limits : Limits
@@ -72,6 +79,7 @@ class ChildProcess:
         self._limits = limits
         self._output = bytearray()
         self._printed = 0
+        self.waited = 0.0
         self.folder = os.path.realpath(tempfile.mkdtemp(prefix="radiokit-"))
         try:
             paths = _written(Path(self.folder), files)
@@ -114,7 +122,7 @@ class ChildProcess:
         MalformedError
             When what it says is no answer.
         """
-        deadline = time.monotonic() + seconds
+        self.waited, before = 0.0, time.monotonic()
         self._printed = 0
         whole = Assembler(self._limits.answer_bytes)
         left = memoryview(request)
@@ -124,11 +132,12 @@ class ChildProcess:
             if left:
                 selector.register(self._requests, selectors.EVENT_WRITE)
             while True:
-                remaining = deadline - time.monotonic()
-                if remaining <= 0:
+                if self.waited >= seconds:
                     raise LateError(f"took longer than {seconds:g} s")
                 with let_in():
-                    ready = selector.select(remaining)
+                    ready = selector.select(min(seconds - self.waited, TURN))
+                now = time.monotonic()
+                self.waited, before = self.waited + min(now - before, TURN), now
                 for key, _ in ready:
                     results = key.fd == self._results
                     try:
@@ -169,9 +178,7 @@ class ChildProcess:
         process = self._process
         with contextlib.suppress(ProcessLookupError):
             process.send_signal(signal.SIGTERM)  # the launcher then kills all
-        try:
-            process.wait(5)
-        except subprocess.TimeoutExpired:
+        if not self._ended():
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
             process.wait()
@@ -189,13 +196,20 @@ class ChildProcess:
         with contextlib.suppress(StoppedError, BlockingIOError):
             self._keep(os.read(self._printing.fileno(), 1 << 16))
 
+    def _ended(self) -> bool:
+        """Wait for the launcher's end, and return whether it came in time."""
+        for _ in range(round(ENDING / TURN)):
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                self._process.wait(TURN)
+                return True
+        return False
+
     def _ending(self) -> str:
         """Say how the child came to its end."""
-        try:
-            code = self._process.wait(5)
-        except subprocess.TimeoutExpired:
+        if not self._ended():
             return "closed its channel of answers"
         self._drain()
+        code = self._process.returncode
         if code == -signal.SIGUSR1:
             return f"used more than {self._limits.memory_bytes / 2**30:.3g} GiB of memory"
         if code == -signal.SIGUSR2:

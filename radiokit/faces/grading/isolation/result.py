@@ -33,8 +33,8 @@ class Result:
     "cell 3, line 2", and ``row`` the row that was at hand, where the function was called row by row.
     ``ended`` says that the process ended, or was ended, before it answered. ``output`` is the beginning of
     what it printed. ``protections`` were active during the call, ``missing`` were not, see ``PROTECTIONS``.
-    ``seconds`` is wall time, a child's start included. ``facts`` are what ``Sandbox.load`` and
-    ``Sandbox.facts`` asked for.
+    ``seconds`` is how long the answer was waited for, without what the whole machine stood still meanwhile.
+    ``facts`` are what ``Sandbox.load`` and ``Sandbox.facts`` asked for.
     """
 
     values: tuple[Array, ...] = ()

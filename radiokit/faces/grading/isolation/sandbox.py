@@ -108,6 +108,7 @@ class Sandbox:
         self._budgets: list[_Budget] = []
         self._apart = self._branched = False
         self._end = self._output = ""
+        self._waited = self._stood = 0.0
 
     def __enter__(self) -> Sandbox:
         """Hold interrupts from here on; they are let in while a child is waited for."""
@@ -252,8 +253,7 @@ class Sandbox:
                 child.close()
 
     def _called(self, request: dict[str, Any], arrays: Sequence[Array], timeout: float | None) -> Result:
-        began = time.monotonic()
-        limit = self.limits.seconds if timeout is None else timeout
+        limit, branched = self.limits.seconds if timeout is None else timeout, 0.0
         for last in (False, True):
             if self._child is None or self._loaded is None:
                 failed = self._loaded is not None and bool(self._loaded.error)  # then it would fail again
@@ -265,6 +265,7 @@ class Sandbox:
             if self._branched or not self._apart or seconds <= 0:
                 break
             branch = self._branch(True)
+            branched += branch.seconds
             seconds, late = self._left(limit)
             if branch.ok or seconds <= 0:
                 break
@@ -272,9 +273,8 @@ class Sandbox:
                 return branch
         if seconds <= 0:
             return Result(error=late, ended=True, protections=self._protections)
-        with self._charged():
-            result = self._request(request, arrays, seconds, late)
-        return replace(result, seconds=time.monotonic() - began)
+        result = self._charged(request, arrays, seconds, late)
+        return replace(result, seconds=branched + result.seconds)
 
     def _left(self, seconds: float) -> tuple[float, str]:
         """Return what is left to a call that may take this time [s], and what is said when it is over."""
@@ -284,15 +284,14 @@ class Sandbox:
                 seconds, late = budget.left, f"took longer than {budget.seconds:g} s in all"
         return seconds, late
 
-    @contextmanager
-    def _charged(self) -> Iterator[None]:
-        """Take the time of the block from what calls share."""
+    def _charged(self, request: dict[str, Any], arrays: Sequence[Array], *more: Any) -> Result:
+        """Ask the child, and take from what calls share the time of that, and of ending it where it must."""
         began = time.monotonic()
-        try:
-            yield
-        finally:
-            for budget in self._budgets:
-                budget.left -= time.monotonic() - began
+        result = self._request(request, arrays, *more)
+        spent = time.monotonic() - began - self._stood if result.ended else result.seconds
+        for budget in self._budgets:
+            budget.left -= spent
+        return result
 
     def _branch(self, begins: bool) -> Result:
         """Begin or end a copy of the process that the submission was loaded in."""
@@ -300,9 +299,8 @@ class Sandbox:
             self._end = secrets.token_hex(8)
         token, least = ("", 0.0) if begins else (self._end, CLEARING)
         seconds = max(self._left(BRANCHING)[0], least)
-        with self._charged():
-            asked = {"branch": begins, "end": self._end}
-            result = self._request(asked, (), seconds, "did not answer", token)
+        asked = {"branch": begins, "end": self._end}
+        result = self._charged(asked, (), seconds, "did not answer", token)
         if result.error:  # the next call loads it anew
             self.close()
         self._branched = begins and result.ok
@@ -312,14 +310,18 @@ class Sandbox:
         self, request: dict[str, Any], arrays: Sequence[Array], seconds: float, late: str, token: str = ""
     ) -> Result:
         """Ask the child, and return what becomes of it."""
-        began = time.monotonic()
         found: dict[str, Any] = {}
         try:
             with held():
                 child = self._child = self._child or self._started()
             token = token or secrets.token_hex(8)
             asked = pack({"id": token, "file": self._name, **request}, arrays)
-            header, values = child.exchange(asked, seconds)
+            began = time.monotonic()
+            try:
+                header, values = child.exchange(asked, seconds)
+            finally:
+                self._waited = child.waited
+                self._stood = max(0.0, time.monotonic() - began - child.waited)
             found = judged(header, values, token, outputs=request.get("outputs", 1), folder=child.folder)
             self._output = child.printed()
         except (StoppedError, MalformedError) as error:
@@ -333,7 +335,7 @@ class Sandbox:
             raise
         return Result(
             **found,
-            seconds=time.monotonic() - began,
+            seconds=self._waited,
             output=self._output,
             protections=self._protections,
         )
