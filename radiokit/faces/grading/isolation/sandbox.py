@@ -8,13 +8,14 @@ import sys
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Literal
 
 import numpy.typing as npt
 
+from radiokit.faces.grading.isolation.budgets import Budgets
 from radiokit.faces.grading.isolation.interrupts import held
 from radiokit.faces.grading.isolation.limits import Limits
 from radiokit.faces.grading.isolation.process import ChildProcess, LateError, StoppedError, carried, started
@@ -32,15 +33,6 @@ CLEARING = 1.0
 """How long it may take to end one if they have less [s]."""
 ENDING = 1.0
 """What is left to a child to say that it came to the end of its time [s]."""
-
-
-@dataclass
-class _Budget:
-    """Wall time that calls share; the first loading within it is free."""
-
-    seconds: float
-    left: float
-    loaded: bool = False
 
 
 class Sandbox:
@@ -105,7 +97,7 @@ class Sandbox:
         self._child: ChildProcess | None = None
         self._protections: tuple[str, ...] = ()
         self._loaded: Result | None = None
-        self._budgets: list[_Budget] = []
+        self._budgets = Budgets()
         self._apart = self._branched = False
         self._end = self._output = ""
         self._waited = self._stood = 0.0
@@ -143,9 +135,7 @@ class Sandbox:
             self._loaded = self._request(
                 {"load": seconds}, (), seconds + ENDING, f"took longer than {seconds:g} s"
             )
-            for budget in self._budgets:
-                budget.left -= time.monotonic() - began if budget.loaded else 0.0
-                budget.loaded = True
+            self._budgets.spend_loading(time.monotonic() - began)
         return self._loaded
 
     def call(
@@ -219,13 +209,8 @@ class Sandbox:
 
         A first loading, and what is between, are free.
         """
-        if not 0 < seconds < float("inf"):
-            raise ParameterError("seconds", seconds, "a finite number above 0")
-        self._budgets.append(_Budget(seconds, seconds))
-        try:
+        with self._budgets.within(seconds):
             yield
-        finally:
-            self._budgets.pop()
 
     @contextmanager
     def apart(self) -> Iterator[None]:
@@ -261,12 +246,12 @@ class Sandbox:
                 if loaded.error:
                     error = f"could not be loaded: it {loaded.error}"
                     return Result(error=error, protections=self._protections)
-            seconds, late = self._left(limit)
+            seconds, late = self._budgets.left(limit)
             if self._branched or not self._apart or seconds <= 0:
                 break
             branch = self._branch(True)
             branched += branch.seconds
-            seconds, late = self._left(limit)
+            seconds, late = self._budgets.left(limit)
             if branch.ok or seconds <= 0:
                 break
             if last:  # the first time, it may be what earlier calls have left
@@ -276,21 +261,11 @@ class Sandbox:
         result = self._charged(request, arrays, seconds, late)
         return replace(result, seconds=branched + result.seconds)
 
-    def _left(self, seconds: float) -> tuple[float, str]:
-        """Return what is left to a call that may take this time [s], and what is said when it is over."""
-        late = f"took longer than {seconds:g} s"
-        for budget in self._budgets:
-            if budget.left < seconds:
-                seconds, late = budget.left, f"took longer than {budget.seconds:g} s in all"
-        return seconds, late
-
     def _charged(self, request: dict[str, Any], arrays: Sequence[Array], *more: Any) -> Result:
         """Ask the child, and take from what calls share the time of that, and of ending it where it must."""
         began = time.monotonic()
         result = self._request(request, arrays, *more)
-        spent = time.monotonic() - began - self._stood if result.ended else result.seconds
-        for budget in self._budgets:
-            budget.left -= spent
+        self._budgets.spend(time.monotonic() - began - self._stood if result.ended else result.seconds)
         return result
 
     def _branch(self, begins: bool) -> Result:
@@ -298,7 +273,7 @@ class Sandbox:
         if begins:
             self._end = secrets.token_hex(8)
         token, least = ("", 0.0) if begins else (self._end, CLEARING)
-        seconds = max(self._left(BRANCHING)[0], least)
+        seconds = max(self._budgets.left(BRANCHING)[0], least)
         asked = {"branch": begins, "end": self._end}
         result = self._charged(asked, (), seconds, "did not answer", token)
         if result.error:  # the next call loads it anew
