@@ -290,3 +290,39 @@ def test_copies_and_names_take_their_time_from_their_question(tmp_path):
     assert all(re.search(SLOW, part.text) for part in found["attack"].parts[1:])
     assert "defines no function honest" in found["honest"].explanation
     assert found.seconds["honest"] < work.limits.seconds
+
+
+TATTLER = """
+from pathlib import Path
+import numpy as np
+KEPT = Path("kept.txt")
+def first(x):
+    with KEPT.open("a") as file:
+        print(*np.asarray(x).tolist(), file=file)
+    return 2.0 * np.asarray(x)
+def second(x):
+    raise ValueError(KEPT.read_text() if KEPT.exists() else "nothing")
+"""
+
+
+@pytest.mark.parametrize("visibility", ["visible", "hidden"])
+def test_inputs_of_hidden_parts_cannot_be_shown_by_others(visibility, tmp_path):
+    file = tmp_path / "tattler.py"
+    file.write_text(TATTLER)
+    judge = G.Values(inputs=lambda rng: {"x": 3.0 + np.arange(8)}, reference=the_honest_reference)
+    questions = [
+        G.Question(
+            signature=f"{name}(x)",
+            points=1,
+            title=BOTH,
+            text=BOTH,
+            parts=(G.Part(name="hard", judge=judge, visibility=seen),),
+        )
+        for name, seen in (("first", visibility), ("second", "visible"))
+    ]
+    work = G.Assignment(name="a", title=BOTH, intro=BOTH, questions=tuple(questions))
+    found = G.grade(work, file)
+    assert found["first"].score == 1
+    told = found["second"].explanation
+    assert ("3.0 4.0 5.0" in told) is (visibility == "visible")  # which it may tell
+    assert ("ValueError: nothing" in told) is (visibility == "hidden")

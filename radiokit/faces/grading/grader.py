@@ -60,7 +60,9 @@ def grade(
 ) -> Grade:
     """Grade a submission.
 
-    Its code runs in a sandbox and is handed inputs alone; references and points stay in this process.
+    Its code runs in a sandbox and is handed inputs alone; references and points stay in this process. Parts
+    that are not visible have a sandbox of their own, for what a function keeps of their inputs it could show
+    in another part's message.
 
     Parameters
     ----------
@@ -111,7 +113,10 @@ def grade(
         questions=(),
         complete=False,
     )
-    with Sandbox(submission, content=content, limits=work.limits) as sandbox:
+    with (
+        Sandbox(submission, content=content, limits=work.limits) as sandbox,
+        Sandbox(submission, content=content, limits=work.limits, beside=sandbox) as unseen,
+    ):
         loaded = sandbox.load()
         names = list(loaded.facts.get("names", ())) if loaded.ok else []
         problems = _problems(loaded, language)
@@ -130,7 +135,7 @@ def grade(
                         for name in question.functions
                     }
                     found, review, numbers = _judged(
-                        sandbox, work, question, absent, student, secret, language
+                        sandbox, unseen, work, question, absent, student, secret, language
                     )
                 measured.update({f"{question.name}.{name}": value for name, value in numbers.items()})
                 grades.append(_graded(question, found, review, language))
@@ -149,6 +154,7 @@ def grade(
 
 def _judged(
     sandbox: Sandbox,
+    unseen: Sandbox,
     work: Assignment,
     question: Question,
     absent: Mapping[str, Finding | None],
@@ -170,9 +176,10 @@ def _judged(
         rng = student_rng(work, question, part, student=student, secret=secret)
         shown = part.visibility == "visible"
         try:
-            with sandbox.apart():
+            place = sandbox if shown else unseen
+            with place.apart():
                 finding = part.judge.judge(
-                    Isolated(sandbox, name),
+                    Isolated(place, name),
                     rng,
                     language=language,
                     hints=question.hints,

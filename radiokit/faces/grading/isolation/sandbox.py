@@ -55,6 +55,8 @@ class Sandbox:
         Further files for the submission's folder.
     namespaces : bool, optional
         False to do without Linux namespaces, even where they are granted.
+    beside : Sandbox, optional
+        Another one, whose limits that calls share are this one's, too.
 
     Raises
     ------
@@ -81,6 +83,7 @@ class Sandbox:
         limits: Limits | None = None,
         files: Sequence[str | Path] = (),
         namespaces: bool = True,
+        beside: Sandbox | None = None,
     ) -> None:
         if os.name != "posix":
             raise RadiokitError("isolation needs a POSIX system: run it in WSL or a container")
@@ -97,7 +100,7 @@ class Sandbox:
         self._child: ChildProcess | None = None
         self._protections: tuple[str, ...] = ()
         self._loaded: Result | None = None
-        self._budgets = Budgets()
+        self._budgets: Budgets = Budgets() if beside is None else beside._budgets
         self._apart = self._branched = False
         self._end = self._output = ""
         self._waited = self._stood = 0.0
