@@ -127,8 +127,12 @@ def act(order: tuple[str, str]) -> str:
 
 
 def start(*arguments: str | Path, **options: object) -> subprocess.Popen[bytes]:
-    """Start ``radiokit`` with arguments, in a process group of its own."""
-    code = "from radiokit.faces.cli import main; main()"
+    """Start ``radiokit`` with arguments, in a process group of its own, where it can be interrupted.
+
+    It could not if these tests run in the background of a shell, which then has all ignore interrupts.
+    """
+    code = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler);"
+    code += "from radiokit.faces.cli import main; main()"
     command = [sys.executable, "-c", code, *map(str, arguments)]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
     return subprocess.Popen(command, start_new_session=True, **{**pipes, **options})  # type: ignore[call-overload]

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
 import sys
 import tempfile
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -22,8 +23,16 @@ from radiokit.faces.grading.isolation.sandbox import Sandbox
 DOUBLE = b"def double(x): return 2 * x"
 
 
+@pytest.fixture(autouse=True)
+def interruptible() -> Iterator[None]:
+    """Where these tests run in the background of a shell, interrupts are ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 @pytest.fixture
-def received(monkeypatch: pytest.MonkeyPatch) -> Any:
+def received() -> Iterator[list[int]]:
     """The signals that got through to handlers, which raise nothing."""
     numbers: list[int] = []
     before = {each: signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)}
@@ -80,27 +89,29 @@ def test_after_an_interrupt_was_let_in_the_rest_is_cleared_up_undisturbed() -> N
     assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
 
 
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="forks")
-@pytest.mark.parametrize("waits", [False, True])
-def test_what_ends_a_process_does_so_when_it_has_cleared_up(waits: bool, tmp_path: Path) -> None:
-    pid = os.fork()
-    if pid == 0:
-        try:
-            with held():
-                try:
-                    if waits:
-                        with let_in():
-                            signal.raise_signal(signal.SIGTERM)
-                    signal.raise_signal(signal.SIGTERM)
-                    (tmp_path / "went on").touch()
-                finally:
-                    (tmp_path / "cleared up").touch()
-        finally:
-            os._exit(0)
-    _, status = os.waitpid(pid, 0)
-    assert os.waitstatus_to_exitcode(status) == -signal.SIGTERM
-    assert (tmp_path / "cleared up").exists()
-    assert (tmp_path / "went on").exists() is not waits
+ENDED = """
+import signal
+from pathlib import Path
+from radiokit.faces.grading.isolation.interrupts import held, let_in
+with held():
+    try:
+        if {waits}:
+            with let_in():
+                signal.raise_signal(signal.SIGTERM)
+        signal.raise_signal(signal.SIGTERM)
+        print("went on", flush=True)
+    finally:
+        print("cleared up", flush=True)
+print("never")
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="a process is ended by a signal on POSIX systems alone")
+@pytest.mark.parametrize(("waits", "printed"), [(False, "went on\ncleared up\n"), (True, "cleared up\n")])
+def test_what_ends_a_process_does_so_when_it_has_cleared_up(waits: bool, printed: str) -> None:
+    code = ENDED.format(waits=waits)
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert (run.returncode, run.stdout) == (-signal.SIGTERM, printed)
 
 
 def test_ignored_signals_stay_ignored_and_other_threads_change_nothing() -> None:

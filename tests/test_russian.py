@@ -19,7 +19,7 @@ from radiokit.facts.errors import CallableError, TargetError
 
 G = rk.grading
 PACKAGE = Path(rk.__path__[0])
-SANDBOX = ("sandbox", "process", "result", "protocol", "child", "loading", "answers", "remote")
+SANDBOX = ("sandbox", "budgets", "process", "result", "protocol", "child", "loading", "answers", "remote")
 FILES = [
     *(PACKAGE / "faces" / "grading" / "isolation" / f"{name}.py" for name in SANDBOX),
     PACKAGE / "faces" / "grading" / "handout" / "here.py",
@@ -53,7 +53,7 @@ def sentences(tree: ast.AST) -> Iterator[str]:
                 yield from texts(node.args[place])
             elif name == "_note":
                 yield from texts(node.args[2])
-            elif name in ("_request", "_branch") and len(node.args) > 3:
+            elif name in ("_request", "_charged") and len(node.args) > 3:
                 yield from texts(node.args[3])
             elif name == "Result":
                 yield from (

@@ -56,7 +56,7 @@ class Here:
     >>> twice = Here(lambda x: 2 * x, "twice")
     >>> twice.call(np.array([1.0, 2.0])).values
     (array([2., 4.]),)
-    >>> twice.call(np.array([1.0, 2.0]), outputs=2).error
+    >>> twice.call(np.array([1.0, 2.0, 3.0]), outputs=2).error
     'returned one value where 2 are wanted, as in return a, b'
     """
 

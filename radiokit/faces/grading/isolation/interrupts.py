@@ -61,14 +61,13 @@ def held() -> Iterator[None]:
     Within it they are let in only where ``let_in`` says so. Where this is not the main thread, or they are
     held already, it changes nothing: Python runs handlers in the main thread alone.
 
-    >>> try:
-    ...     with held():
-    ...         signal.raise_signal(signal.SIGINT)
-    ...         print("cleared up")
-    ... except KeyboardInterrupt:
-    ...     print("interrupted")
+    >>> before = signal.signal(signal.SIGTERM, lambda number, frame: print("ended"))
+    >>> with held():
+    ...     signal.raise_signal(signal.SIGTERM)
+    ...     print("cleared up")
     cleared up
-    interrupted
+    ended
+    >>> _ = signal.signal(signal.SIGTERM, before)
     """
     global _hold
     if _hold is not None or threading.current_thread() is not threading.main_thread():
