@@ -270,6 +270,27 @@ def test_a_question_of_two_parts_has_its_time_once(tmp_path, monkeypatch):
     assert found["honest"].score == 1
 
 
+def test_loading_anew_costs_the_next_question_nothing(tmp_path):
+    """Not even where it is loaded twice, for parts that are hidden and for those that are not."""
+    path = tmp_path / "submission.py"
+    path.write_text(
+        "import time\ntime.sleep(1.5)\ndef attack(x):\n    while True: pass\ndef honest(x): return 2 * x\n",
+        encoding="utf-8",
+    )
+    work = assignment(1)
+    seen = [
+        dataclasses.replace(
+            each,
+            seconds=1,
+            parts=(dataclasses.replace(each.parts[0], name="ordinary", visibility="visible"), *each.parts),
+        )
+        for each in work.questions
+    ]
+    found = G.grade(dataclasses.replace(work, questions=tuple(seen)), path)
+    assert found["attack"].score == 0
+    assert found["honest"].score == 1
+
+
 def test_copies_and_names_take_their_time_from_their_question(tmp_path):
     path = tmp_path / "submission.py"
     path.write_text(

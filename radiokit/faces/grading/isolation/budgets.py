@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from radiokit.facts.errors import ParameterError
 
@@ -16,11 +16,11 @@ MOST = 0.9
 
 @dataclass
 class _Budget:
-    """Wall time that calls share; the first loading within it is free."""
+    """Wall time that calls share; each sandbox's first loading within it is free."""
 
     seconds: float
     left: float
-    loaded: bool = False
+    loaded: set[int] = field(default_factory=set)
 
 
 class Budgets:
@@ -64,8 +64,8 @@ class Budgets:
         for budget in self._open:
             budget.left -= seconds
 
-    def spend_loading(self, seconds: float) -> None:
-        """Take the time of a loading [s] from those in which it was not the first."""
+    def spend_loading(self, seconds: float, sandbox: object) -> None:
+        """Take the time of a loading [s] from those in which it was not the sandbox's first."""
         for budget in self._open:
-            budget.left -= seconds if budget.loaded else 0.0
-            budget.loaded = True
+            budget.left -= seconds if id(sandbox) in budget.loaded else 0.0
+            budget.loaded.add(id(sandbox))

@@ -138,7 +138,7 @@ class Sandbox:
             self._loaded = self._request(
                 {"load": seconds}, (), seconds + ENDING, f"took longer than {seconds:g} s"
             )
-            self._budgets.spend_loading(time.monotonic() - began)
+            self._budgets.spend_loading(time.monotonic() - began, self)
         return self._loaded
 
     def call(
