@@ -278,15 +278,12 @@ def test_loading_anew_costs_the_next_question_nothing(tmp_path):
         encoding="utf-8",
     )
     work = assignment(1)
-    seen = [
-        dataclasses.replace(
-            each,
-            seconds=1,
-            parts=(dataclasses.replace(each.parts[0], name="ordinary", visibility="visible"), *each.parts),
-        )
-        for each in work.questions
-    ]
-    found = G.grade(dataclasses.replace(work, questions=tuple(seen)), path)
+    attack, honest = (dataclasses.replace(each, seconds=1) for each in work.questions)
+    (hidden,) = honest.parts
+    seen = dataclasses.replace(hidden, name="ordinary", visibility="visible")
+    attack = dataclasses.replace(attack, parts=(dataclasses.replace(attack.parts[0], visibility="visible"),))
+    honest = dataclasses.replace(honest, parts=(seen, hidden))
+    found = G.grade(dataclasses.replace(work, questions=(attack, honest)), path)
     assert found["attack"].score == 0
     assert found["honest"].score == 1
 
