@@ -115,8 +115,10 @@ def hand_in(base):
 
 def start(base: Path) -> subprocess.Popen[str]:
     """Start the autograder by bash, with this Python in place of the one that setup.sh would make."""
+    (base.parent / "tmp").mkdir(exist_ok=True)
     environment = {
         "PATH": os.environ["PATH"],
+        "TMPDIR": str(base.parent / "tmp"),  # where one that is killed leaves a file, as its container may
         "AUTOGRADER_BASE": str(base),
         "AUTOGRADER_PYTHON": sys.executable,
     }
