@@ -259,6 +259,16 @@ def test_black_and_constant_earn_nothing_where_something_else_is_asked_for(coars
     assert judged(lambda wi, wo: lambert(wi, wo, 0.5), reference=lambda: Lambert(reflectance=0.5)).share == 1
 
 
+@pytest.mark.parametrize(
+    ("factor", "name"), [(1 / (2 * np.pi), "two-pi-too-few"), (2 * np.pi, "two-pi-too-many")]
+)
+def test_too_dark_by_a_slip_costs_what_too_bright_costs(factor, name, coarse):
+    asked = {"reference": lambda: Lambert(reflectance=0.8), "least": 0.5}
+    found = judged(lambda wi, wo: factor * lambert(wi, wo, 0.8), **asked)
+    assert (found.share, found.diagnosis) == (2 / 3, name)
+    assert ("at least 50 % is asked for" in found.text) is (factor < 1)
+
+
 def test_what_hides_from_the_comparison_is_no_model_either(coarse):
     def shy(wi, wo):  # it knows by their number which directions are compared
         return np.full(len(wi), np.nan) if len(wi) == PAIRS else lambert(wi, wo, 0.5)

@@ -71,7 +71,8 @@ class Laws:
     variants : mapping
         What wrong solutions give, by the name of the misconception: ``{name: f(wi, wo, **parameters)}``.
     least : float
-        The share of the light that must be reflected in the direction where it is most, in [0, 1].
+        The share of the light that must be reflected in the direction where it is most, in [0, 1]. What is
+        darker earns nothing, unless a known slip explains it: then it breaks the law of energy.
     tolerance : float
         How far beyond a limit a value may lie, in [0, 1).
 
@@ -148,7 +149,7 @@ class Laws:
         wrong: dict[str, tuple[str, str]] = {}  # by law: what was found, and the sentence
         right: dict[str, str] = {}
         notes: list[str] = []
-        refused, like = "", Likeness()
+        refused, dark, like = "", "", Likeness()
         try:
             models = [callee.bsdf(given) for given in chosen]
             for model, given in zip(models, chosen, strict=True):
@@ -164,12 +165,16 @@ class Laws:
                         text = _with(given if len(chosen) > 1 else {}, text, language)
                         wrong.setdefault(verdict.check, (name, text))
                     right.setdefault(verdict.check, text)
-                refused = refused or self._too_dark(report, language)
-            if self.reference is not None and not refused:
+                dark = dark or self._too_dark(report, language)
+            if self.reference is not None:
                 like = compared(
                     models, meant, chosen, rng, variants=self.variants, hints=hints, language=language
                 )
                 refused = tell(language, "stranger") if like.stranger else ""
+            if dark and like.name:  # a known slip in the right function, which is too dark for it
+                wrong["energy"] = ("too-dark", dark)
+            elif dark:
+                refused, like = dark, Likeness()
         except CallableError as error:
             return Finding(share=0.0, text=failed(error, language))
         kept = sum(self._weight(law) for law in self.laws if law not in wrong)
