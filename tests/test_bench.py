@@ -144,7 +144,7 @@ def test_what_is_measured_comes_to_its_place(monkeypatch):
     assert start.total_seconds == 6.5
 
 
-@pytest.mark.skipif(not numba_runs(), reason="nothing is compiled")
+@pytest.mark.skipif(not numba_runs(), reason="looks at what Numba compiles, and it does not run here")
 def test_an_empty_cache_costs_a_compilation(found):
     assert {start.cache for start in found.starts if start.method == "mc"} == {"cold", "warm"}
     cold, warm = (files for method, files in COMPILED if method == "mc")
@@ -299,7 +299,7 @@ def test_a_peer_agrees_with_the_truth_within_its_error(peer, alpha, theta, seed)
     assert abs(answer.value - peer.answer(alpha, theta, 1 << 18, seed + 1).value) > 1e-9
 
 
-@pytest.mark.skipif(Compiled().absent() is not None, reason="no C compiler")
+@pytest.mark.skipif(Compiled().absent() is not None, reason="the peer in C needs a compiler")
 def test_the_kernel_in_c_covers_and_does_not_repeat_itself(seed):
     values = [Compiled().answer(0.3, 60.0, 4096, seed + i) for i in range(400)]
     exact = ggx_albedo(0.3, 60.0)[0]
@@ -309,7 +309,7 @@ def test_the_kernel_in_c_covers_and_does_not_repeat_itself(seed):
     assert spread == pytest.approx(values[0].error, rel=0.2)
 
 
-@pytest.mark.skipif(Compiled().absent() is not None, reason="no C compiler")
+@pytest.mark.skipif(Compiled().absent() is not None, reason="the peer in C needs a compiler")
 def test_loading_the_kernel_leaves_denormals_alone():
     Compiled().answer(0.3, 60.0, 4096, 1)
     assert np.float64(1e-310) * np.float64(0.5) > 0

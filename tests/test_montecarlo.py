@@ -14,7 +14,7 @@ import pytest
 
 import radiokit as rk
 from radiokit.facts.errors import CallableError, NonFiniteError, ParameterError
-from radiokit.measure.fused import FusedDraw, fused_mean
+from radiokit.measure.fused import FusedDraw, fused_mean, fused_means
 from radiokit.measure.moments import Moments
 from radiokit.measure.montecarlo import block_generator, mean, seed_from
 from radiokit.measure.statistics import binomial_interval, sidak, z_test
@@ -326,6 +326,17 @@ def test_directions_take_turns_while_there_is_time(method, model, rough, seed, c
         np.testing.assert_allclose(found.value[place], each.value, rtol=1e-12)
         np.testing.assert_allclose(found.error[place], each.error, rtol=1e-6, atol=1e-12)
     assert found.seconds < 0.06
+
+
+def test_means_together_are_those_of_each_whether_compiled_or_not(rough, seed):
+    kernel, constants = rough[0].weight_kernel(np.array(rough[1]))
+    terms = [(kernel, constants), (lambda u0, u1: u0 * u1, ())]
+    for several in (terms, terms[:1] * 2, terms[1:] * 2):
+        found = fused_means(several, samples=20_000, rng=seed % 1000)
+        alone = [fused_mean(*term, samples=20_000, rng=seed % 1000) for term in several]
+        np.testing.assert_allclose(found.value, [each.value for each in alone], rtol=1e-13)
+        np.testing.assert_allclose(found.error, [each.error for each in alone], rtol=1e-9)
+        assert found.evaluations == 40_000
 
 
 @pytest.mark.parametrize(

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 import sympy
 
-from radiokit.faces.grading.isolation import process
+from radiokit.faces.grading.isolation import handed, process
 from radiokit.faces.grading.isolation.answers import RefusedError, Taker
 from radiokit.faces.grading.isolation.limits import Limits
 from radiokit.faces.grading.isolation.result import steady
 from radiokit.faces.grading.isolation.sandbox import Sandbox
-from radiokit.facts.errors import ParameterError
+from radiokit.facts.errors import ParameterError, RadiokitError
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the sandbox needs a POSIX system")
 
@@ -261,3 +261,15 @@ def test_numbers_of_other_packages_are_taken():
 
 def test_a_large_answer_is_never_made(theirs):
     assert theirs.call("memory", 1.0).error == "returned an array of shape (1000000000,), 8 GB: too much"
+
+
+def test_what_is_too_large_is_not_handed_over(tmp_path, monkeypatch):
+    file = tmp_path / "theirs.py"
+    file.write_text("x = 1")
+    assert handed.handed(file, None, []) == {"theirs.py": str(file.resolve())}
+    monkeypatch.setattr(handed, "LARGEST", 4)
+    for content in (None, b"x = 1"):
+        with pytest.raises(RadiokitError, match=r"theirs\.py has more than 4 bytes"):
+            Sandbox(file, content=content)
+    with pytest.raises(RadiokitError, match="no such file: .*absent"):
+        Sandbox("theirs.py", content=b"", files=[tmp_path / "absent"])

@@ -214,7 +214,7 @@ def fused_mean(
     True
     """
     draw = _draw(function, parameters, dimensions)
-    block, threads = _blocking(function, workers)
+    block, threads = _blocking([function], workers)
     return _run(draw, block, threads, samples=samples, rng=rng, rtol=rtol, seconds=seconds, method=method)
 
 
@@ -237,7 +237,7 @@ def fused_means(
     Parameters
     ----------
     terms : sequence of (Kernel or callable, tuple of float)
-        At least one: functions with their parameters, all kernels or all none.
+        At least one: functions with their parameters.
     dimensions, samples, rng, rtol, seconds, workers, method
         As for ``fused_mean``; ``samples`` are those of each. The estimate's ``evaluations`` are of all.
 
@@ -246,7 +246,7 @@ def fused_means(
     ((2,), 2000)
     """
     draw = _Together(tuple(_draw(function, parameters, dimensions) for function, parameters in terms))
-    block, threads = _blocking(terms[0][0], workers)
+    block, threads = _blocking([function for function, _ in terms], workers)
     found = _run(draw, block, threads, samples=samples, rng=rng, rtol=rtol, seconds=seconds, method=method)
     return replace(found, evaluations=len(terms) * found.evaluations)
 
@@ -259,15 +259,15 @@ def _draw(function: Any, parameters: tuple[float, ...], dimensions: int) -> Fuse
     return draw
 
 
-def _blocking(function: Any, workers: int | None) -> tuple[int, int]:
+def _blocking(functions: Sequence[Any], workers: int | None) -> tuple[int, int]:
     """Return the samples in a block, and how many threads draw them."""
-    kernel = isinstance(function, Kernel)
+    kernels = all(isinstance(function, Kernel) for function in functions)
     threads = workers
     if threads is None:
-        threads = processors() if kernel else 1
+        threads = processors() if kernels else 1
     if type(threads) is not int or threads < 1:
         raise ParameterError("workers", workers, "an integer, at least 1, or None")
-    return BLOCK if kernel else _PIECE, threads  # what is no kernel may be slow
+    return BLOCK if kernels else _PIECE, threads  # what is no kernel may be slow
 
 
 def _run(draw: BlockDraw, block: int, threads: int, *, samples: int | None, **options: Any) -> Estimate:

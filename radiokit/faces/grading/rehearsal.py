@@ -16,10 +16,10 @@ from radiokit.faces.grading.judges.directions import integral
 from radiokit.faces.grading.judges.draws import cells_of_density
 from radiokit.faces.grading.judges.estimator import Estimator
 from radiokit.faces.grading.judges.exact import as_function
-from radiokit.faces.grading.judges.given import drawn, number, numbers, own, shown, truth
+from radiokit.faces.grading.judges.given import called, drawn, number, numbers, own, shown, truth
 from radiokit.faces.grading.judges.laws import Laws
 from radiokit.faces.grading.judges.runs import exact
-from radiokit.faces.grading.judges.sampler import Sampler, called
+from radiokit.faces.grading.judges.sampler import Sampler
 from radiokit.faces.grading.judges.values import Values
 from radiokit.faces.grading.question import Part, Question
 from radiokit.facts.errors import AssignmentError, suggestion

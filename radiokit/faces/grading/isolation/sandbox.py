@@ -16,6 +16,7 @@ from typing import Any, Literal
 import numpy.typing as npt
 
 from radiokit.faces.grading.isolation.budgets import Budgets
+from radiokit.faces.grading.isolation.handed import handed
 from radiokit.faces.grading.isolation.interrupts import held
 from radiokit.faces.grading.isolation.limits import Limits
 from radiokit.faces.grading.isolation.process import ChildProcess, LateError, StoppedError, carried, started
@@ -25,8 +26,6 @@ from radiokit.facts.errors import ParameterError, RadiokitError
 
 __all__ = ["Sandbox"]
 
-LARGEST = 1 << 28
-"""Files of more bytes are no submission."""
 BRANCHING = 5.0
 """How long a child may take to make a copy of itself, or to end one, if its calls have so much left [s]."""
 CLEARING = 1.0
@@ -89,12 +88,7 @@ class Sandbox:
             raise RadiokitError("isolation needs a POSIX system: run it in WSL or a container")
         self.limits = limits or Limits()
         self._name = Path(path).name
-        given = files if content is not None else (*files, path)
-        self._files: dict[str, str | bytes] = {Path(file).name: _checked(Path(file)) for file in given}
-        if content is not None:
-            if len(content) > LARGEST:
-                raise RadiokitError(f"{self._name} has more than {LARGEST} bytes")
-            self._files[self._name] = content
+        self._files = handed(Path(path), content, [Path(file) for file in files])
         self._levels = [True, False] if namespaces and sys.platform == "linux" else [False]
         self._held = ExitStack()
         self._child: ChildProcess | None = None
@@ -323,13 +317,3 @@ class Sandbox:
         child = started(self.limits, self._files, self._levels)
         self._protections = child.protections
         return child
-
-
-def _checked(file: Path) -> str:
-    """Return the path of a file that can be handed to a child."""
-    path = file.resolve()
-    if not path.is_file():
-        raise RadiokitError(f"no such file: {path}")
-    if path.stat().st_size > LARGEST:
-        raise RadiokitError(f"{path} has more than {LARGEST} bytes")
-    return str(path)

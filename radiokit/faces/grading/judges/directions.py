@@ -13,7 +13,17 @@ from radiokit.faces.grading.isolation.protocol import Array
 from radiokit.measure.quadrature import hemisphere
 from radiokit.measure.slope import find_lobe, slope_map
 
-__all__ = ["ABOVE", "ASKED", "UNIFORM", "integral", "moments", "probes", "uniform_variance"]
+__all__ = [
+    "ABOVE",
+    "ASKED",
+    "UNIFORM",
+    "integral",
+    "moments",
+    "probes",
+    "uniform_density",
+    "uniform_variance",
+    "weighed_by",
+]
 
 ABOVE = np.array([0.0, 0.0, 1.0])
 UNIFORM = 0.5 / math.pi
@@ -40,6 +50,17 @@ def moments(directions: Array) -> Array:
     """Return the numbers in [0, 1] by which an integrand is weighed to see where samples are, (2, N)."""
     found: Array = np.stack([np.clip(directions[:, 2], 0.0, 1.0), 0.5 * (1 + directions[:, 0])])
     return found
+
+
+def weighed_by(k: int, integrand: Callable[[Array], Array], directions: Array) -> Array:
+    """Return an integrand times the k-th of the ``moments``."""
+    found: Array = moments(directions)[k] * integrand(directions)
+    return found
+
+
+def uniform_density(directions: Array, **given: Any) -> Array:
+    """Return the density [sr⁻¹] of uniform directions of the hemisphere, wherever they point."""
+    return np.full(len(directions), UNIFORM)
 
 
 def probes(cells: Cells, rng: np.random.Generator) -> Array:

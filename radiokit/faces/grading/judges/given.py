@@ -15,6 +15,7 @@ from radiokit.facts.errors import AssignmentError, ParameterError, RadiokitError
 
 __all__ = [
     "NUMBERS",
+    "called",
     "check_functions",
     "check_shares",
     "drawn",
@@ -210,3 +211,23 @@ def check_shares(name: str, shares: Any) -> None:
     """
     if not isinstance(shares, Mapping) or not all(is_within(share, 0, 1) for share in shares.values()):
         raise ParameterError(name, shares, "a mapping to shares, numbers in [0, 1]")
+
+
+def called(
+    function: Callable[..., Any], directions: Array, given: Mapping[str, Array], what: str = "density"
+) -> Array:
+    """Return the finite numbers (N,) that a function of the assignment gives for directions.
+
+    Raises
+    ------
+    AssignmentError
+        When it gives anything else, or raises.
+    """
+    found = numbers(own(what, function, directions, **given), what)
+    if found.shape != (len(directions),) or not np.isfinite(found).all():
+        told = f"an array of shape {found.shape}" if found.ndim != 1 else shown(found)
+        bad = "" if found.shape != (len(directions),) else ", not all of them finite,"
+        raise AssignmentError(
+            f"{what} gives {told}{bad} for {len(directions)} directions: it must give finite numbers"
+        )
+    return found

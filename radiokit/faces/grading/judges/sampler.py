@@ -15,24 +15,25 @@ from radiokit.faces.grading.isolation.protocol import Array
 from radiokit.faces.grading.judges.directions import (
     ABOVE,
     ASKED,
-    UNIFORM,
     integral,
     moments,
     probes,
+    uniform_density,
     uniform_variance,
+    weighed_by,
 )
 from radiokit.faces.grading.judges.draws import Draws, Fit, cells_of_density, sampled, u_slip
 from radiokit.faces.grading.judges.exact import no_inputs
-from radiokit.faces.grading.judges.given import check_functions, check_shares, drawn, numbers, own, shown
+from radiokit.faces.grading.judges.given import called, check_functions, check_shares, drawn
 from radiokit.faces.grading.judges.runs import UnusableError
 from radiokit.faces.grading.judges.runtests import each_level, settled
 from radiokit.faces.grading.judges.samplewords import line, slip, tell
 from radiokit.faces.grading.judges.suspects import behind_density
-from radiokit.facts.errors import AssignmentError, ParameterError
+from radiokit.facts.errors import ParameterError
 from radiokit.measure.slope import find_lobe
 from radiokit.measure.statistics import bernstein_test
 
-__all__ = ["Sampler", "SamplerAspect", "called"]
+__all__ = ["Sampler", "SamplerAspect"]
 
 SamplerAspect = Literal["distribution", "density", "efficiency"]
 
@@ -188,7 +189,7 @@ class Sampler:
         own = self._own(draws, fit)
         if own:
             told.append(tell(language, "consistent", function=self.pdf))
-        for name, variant in {**self.variants, "uniform-instead": _uniform}.items():
+        for name, variant in {**self.variants, "uniform-instead": uniform_density}.items():
             density = partial(called, variant, given=draws.inputs, what=f"variants[{name!r}]")
             if min(fit.p_values(density).values()) > FITS:
                 return self._found(slip(language, name, hints), *told, name=name)
@@ -228,7 +229,7 @@ class Sampler:
             count=ASKED,
             integral=f"{integral(draws.claimed, cells.width):.4g}",
         )
-        known = {"uniform-instead": _uniform, **self.variants}
+        known = {"uniform-instead": uniform_density, **self.variants}
         numbers = {key: value for key, value in draws.inputs.items() if value.ndim == 0}
         text, name, confidence = behind_density(
             claimed,
@@ -253,7 +254,7 @@ class Sampler:
         exact, uniform = uniform_variance(integrand)
         level = each_level(4 * self.cases)
         width = find_lobe(integrand, ABOVE, around=(False,)).width
-        weighed = [integral(partial(_weighed, integrand, k), width) for k in range(2)]
+        weighed = [integral(partial(weighed_by, k, integrand), width) for k in range(2)]
         rounds: list[set[str]] = []
         while not settled(rounds):
             directions = draws.sample(rng.random((self.samples, 2)))
@@ -304,32 +305,3 @@ class Sampler:
     def _found(self, *text: str, name: str = "", confidence: float = 1.0) -> Finding:
         sure = round(confidence, 2) if name else 0.0
         return Finding(share=self.credit.get(name, 0.0), text=line(*text), diagnosis=name, confidence=sure)
-
-
-def called(
-    function: Callable[..., Any], directions: Array, given: Mapping[str, Array], what: str = "density"
-) -> Array:
-    """Return the finite numbers (N,) that a function of the assignment gives for directions.
-
-    Raises
-    ------
-    AssignmentError
-        When it gives anything else, or raises.
-    """
-    found = numbers(own(what, function, directions, **given), what)
-    if found.shape != (len(directions),) or not np.isfinite(found).all():
-        told = f"an array of shape {found.shape}" if found.ndim != 1 else shown(found)
-        bad = "" if found.shape != (len(directions),) else ", not all of them finite,"
-        raise AssignmentError(
-            f"{what} gives {told}{bad} for {len(directions)} directions: it must give finite numbers"
-        )
-    return found
-
-
-def _weighed(integrand: Callable[..., Array], k: int, directions: Array) -> Array:
-    found: Array = moments(directions)[k] * integrand(directions)
-    return found
-
-
-def _uniform(directions: Array, **given: Any) -> Array:
-    return np.full(len(directions), UNIFORM)
